@@ -1,0 +1,1 @@
+"""Measures of a drawing: spacing, spectrum, tone error."""

@@ -1,0 +1,1 @@
+"""Dots, areas, lines, style, edits and history: plain data, no threads, no GL."""

@@ -1,0 +1,49 @@
+"""The picture that tone is taken from, as a field of darkness over the page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.errors import ParameterError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reference:
+    """Darkness over the page: pixel (0, 0) at the top left corner, square pixels.
+
+    Attributes
+    ----------
+    darkness : (h, w) float32, read-only
+        0 (white, weight exactly 0) to 1 (black).
+    width_mm : float
+        Width of the field on the page.
+    """
+
+    darkness: NDArray[np.float32]
+    width_mm: float
+
+    def __post_init__(self) -> None:
+        field = self.darkness
+        if field.ndim != 2 or field.size == 0:
+            raise ParameterError("a reference is a 2-d field with at least one pixel", "reference")
+        if not (np.isfinite(self.width_mm) and self.width_mm > 0):
+            raise ParameterError(f"{self.width_mm} mm is no width", "page", "give a width above 0")
+        low, high = float(field.min()), float(field.max())
+        if not (0.0 <= low and high <= 1.0):  # also catches NaN
+            raise ParameterError("darkness has to lie in 0..1 and be finite", "reference")
+        fresh = np.ascontiguousarray(field, np.float32)
+        fresh.flags.writeable = False
+        object.__setattr__(self, "darkness", fresh)
+
+    @property
+    def pixel_mm(self) -> float:
+        """Side of a pixel on the page."""
+        return self.width_mm / self.darkness.shape[1]
+
+    @property
+    def height_mm(self) -> float:
+        """Height of the field on the page."""
+        return self.pixel_mm * self.darkness.shape[0]

@@ -1,0 +1,49 @@
+"""Errors a person or a file can cause; programmers' errors stay ordinary exceptions."""
+
+from __future__ import annotations
+
+
+class StipplerError(Exception):
+    """What went wrong, where, and what to do, in one line.
+
+    Parameters
+    ----------
+    what : str
+        The problem, as a short clause.
+    where : str, optional
+        The file, option or part of the drawing concerned.
+    do : str, optional
+        The next step for the person who reads it.
+    """
+
+    def __init__(self, what: str, where: object = "", do: str = "") -> None:
+        self.what, self.where, self.do = what, str(where), do
+        head = f"{self.where}: {what}" if self.where else what
+        super().__init__(" ".join(f"{head}; {do}".split()) if do else " ".join(head.split()))
+
+
+class ParameterError(StipplerError, ValueError):
+    """A value outside its range, or of the wrong kind."""
+
+
+class GeometryError(StipplerError, ValueError):
+    """A polygon or set of dots that no drawing can be made of."""
+
+
+class PictureError(StipplerError):
+    """A picture that cannot be read."""
+
+
+class OutputError(StipplerError, OSError):
+    """A file that cannot be written."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class DisplayError(StipplerError):
+    """No window or no OpenGL where one is needed."""
+
+
+class Cancelled(Exception):  # noqa: N818 - a request, not an error
+    """Raised inside long work when the person has asked it to stop."""

@@ -1,0 +1,1 @@
+"""The worker thread, its frozen requests and its results."""

@@ -1,0 +1,1 @@
+"""Numba kernels over raw arrays; nothing here knows of drawings, windows or threads of ours."""

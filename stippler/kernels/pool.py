@@ -1,0 +1,85 @@
+"""One pool of threads for all kernels.
+
+A range kernel has the signature ``kernel(start, stop, *arrays)``, releases the interpreter lock,
+and writes only to what belongs to ``start..stop``; so any number of threads gives the same bits.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+_lock = threading.Lock()
+_pool: ThreadPoolExecutor | None = None
+_n_threads = 0
+
+
+def n_threads() -> int:
+    """Return how many threads share a kernel: `STIPPLER_THREADS`, or all cores of this process."""
+    global _n_threads
+    if not _n_threads:
+        wanted = os.environ.get("STIPPLER_THREADS", "")
+        _n_threads = int(wanted) if wanted.isdigit() and int(wanted) else _cores()
+    return _n_threads
+
+
+def set_threads(n: int) -> None:
+    """Use `n` threads from now on; 0 returns to the default. For tests and benchmarks."""
+    global _pool, _n_threads
+    with _lock:
+        if _pool is not None:
+            _pool.shutdown(wait=True)
+        _pool, _n_threads = None, n
+
+
+def _cores() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on this platform
+        return os.cpu_count() or 1
+
+
+def _executor() -> ThreadPoolExecutor:
+    global _pool
+    with _lock:
+        if _pool is None:
+            _pool = ThreadPoolExecutor(n_threads(), thread_name_prefix="kernel")
+        return _pool
+
+
+def run_ranges(
+    kernel: Callable[..., Any], n: int, *args: Any, grain: int = 2048, chunks: int = 4
+) -> None:
+    """Run a range kernel over ``0..n``, on all cores when it is worth it.
+
+    Parameters
+    ----------
+    kernel : callable
+        ``kernel(start, stop, *args)``, compiled and `nogil`.
+    n : int
+        Length of the range.
+    grain : int
+        Smallest range worth a thread; below it the kernel runs in the calling thread.
+    chunks : int
+        Ranges for each thread, so that an uneven load levels out.
+    """
+    threads = n_threads()
+    n_ranges = min(threads * chunks, max(n // grain, 1))
+    if threads == 1 or n_ranges == 1:
+        kernel(0, n, *args)
+        return
+    bounds = [n * i // n_ranges for i in range(n_ranges + 1)]
+    executor = _executor()
+    futures: list[Future[Any]] = [
+        executor.submit(kernel, a, b, *args) for a, b in zip(bounds[1:-1], bounds[2:], strict=True)
+    ]
+    try:
+        kernel(bounds[0], bounds[1], *args)
+    finally:
+        for future in futures:
+            future.exception()  # wait for all before anyone touches the arrays again
+    for future in futures:
+        future.result()

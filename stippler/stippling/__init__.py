@@ -1,0 +1,1 @@
+"""The paper's methods over a drawing: first dots, relaxation, tone."""

@@ -1,0 +1,1 @@
+"""Window, input, tools and panels: the only place that knows glfw and imgui."""
