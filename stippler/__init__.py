@@ -1,2 +1,35 @@
-"""Stippler: an editor for stipple drawings, and the methods behind it."""
+"""Stippler: an editor for stipple drawings, and the methods behind it.
+
+    import stippler
+    drawing = stippler.stipple("photo.png", dots=60_000, width=148)
+    drawing.save("photo.svg")
+
+Nothing is imported before it is used, so that the command line starts at once.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from stippler.api import Drawing, pulse_density, relax, stipple
+    from stippler.errors import StipplerError
+
 __version__ = "0.1.0"
+__all__ = ["Drawing", "StipplerError", "pulse_density", "relax", "stipple"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "StipplerError":
+        from stippler import errors
+
+        return errors.StipplerError
+    if name in __all__:
+        from stippler import api
+
+        return getattr(api, name)
+    raise AttributeError(f"module 'stippler' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -21,3 +21,8 @@ def shaders() -> Path:
 def assets() -> Path:
     """Return the folder of sample pictures, patterns and icons."""
     return _root() / "assets"
+
+
+def benchmarks() -> Path:
+    """Return the folder of the package `benchmarks`."""
+    return _root() / "benchmarks"

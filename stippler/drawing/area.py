@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from shapely.geometry import MultiPolygon, Polygon
 
@@ -21,4 +21,4 @@ class Area:
 
     name: str
     outline_mm: Polygon | MultiPolygon
-    style: Style = Style()
+    style: Style = field(default_factory=Style)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Self
 
+import numpy as np
+from numpy.typing import NDArray
 from shapely.geometry import box
 
 from stippler.drawing.area import Area
@@ -51,10 +54,24 @@ class Drawing:
     reference: Reference | None = None
 
     @classmethod
-    def blank(cls, page: Page, style: Style | None = None) -> Drawing:
+    def blank(cls, page: Page, style: Style | None = None) -> Self:
         """Make an empty drawing whose one area is the page."""
         outline = box(0.0, 0.0, page.width_mm, page.height_mm)
         return cls(page, [Area("page", outline, style or Style())])
+
+    @classmethod
+    def from_reference(
+        cls,
+        reference: Reference,
+        position_mm: NDArray[np.float64],
+        radius_mm: NDArray[np.float32],
+        style: Style | None = None,
+    ) -> Self:
+        """Make a drawing of round dots on a page of the reference's size."""
+        drawing = cls.blank(Page(reference.width_mm, reference.height_mm), style)
+        drawing.dots = Dots.round(position_mm, radius_mm)
+        drawing.reference = reference
+        return drawing
 
     @property
     def next_id(self) -> int:

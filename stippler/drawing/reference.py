@@ -32,7 +32,7 @@ class Reference:
         if not (np.isfinite(self.width_mm) and self.width_mm > 0):
             raise ParameterError(f"{self.width_mm} mm is no width", "page", "give a width above 0")
         low, high = float(field.min()), float(field.max())
-        if not (0.0 <= low and high <= 1.0):  # also catches NaN
+        if not (low >= 0.0 and high <= 1.0):  # also catches NaN
             raise ParameterError("darkness has to lie in 0..1 and be finite", "reference")
         fresh = np.ascontiguousarray(field, np.float32)
         fresh.flags.writeable = False
@@ -41,9 +41,11 @@ class Reference:
     @property
     def pixel_mm(self) -> float:
         """Side of a pixel on the page."""
-        return self.width_mm / self.darkness.shape[1]
+        columns: int = self.darkness.shape[1]
+        return self.width_mm / columns
 
     @property
     def height_mm(self) -> float:
         """Height of the field on the page."""
-        return self.pixel_mm * self.darkness.shape[0]
+        rows: int = self.darkness.shape[0]
+        return self.pixel_mm * rows

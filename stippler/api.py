@@ -1,0 +1,187 @@
+"""What `import stippler` offers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stippler.drawing.drawing import Drawing as _Drawing
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from stippler.errors import ParameterError
+from stippler.stippling.stipple import Plan, Progress, stages
+
+Tone = Literal["linear", "perceptual"]
+DEFAULT_WIDTH_MM = 148.0  # A5
+
+
+class Drawing(_Drawing):
+    """A drawing that can be saved, and shows itself in a notebook."""
+
+    __slots__ = ()
+
+    def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
+        """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
+        from stippler.export import save
+
+        save(self, Path(path), dpi=dpi)
+
+    def _repr_svg_(self) -> str:
+        from stippler.files.svg import svg_chunks
+
+        return b"".join(svg_chunks(self)).decode()
+
+
+def stipple(
+    image: Any,
+    dots: int | None = None,
+    width: float = DEFAULT_WIDTH_MM,
+    *,
+    size_range: tuple[float, float] | None = None,
+    iterations: int = 20,
+    seed: int = 1,
+    tone: Tone = "linear",
+    first_dots: str = "pulse-density",
+) -> Drawing:
+    """Turn a picture into a stipple drawing.
+
+    Parameters
+    ----------
+    image : path, Pillow image or array
+        Arrays hold grey or RGB, with or without alpha: integers over their type's range, or
+        floats from 0 (black) to 1 (white).
+    dots : int, optional
+        How many; None: 20,000, or what the size range asks for.
+    width : float, mm
+        Width of the page; the height follows.
+    size_range : (min, max), mm, optional
+        Dot radii; None: a range of 1:2 that meets the tone with that number of dots.
+    iterations : int
+        Relaxation steps.
+    seed : int
+        Same seed, same drawing, whatever the number of threads.
+    tone : {"linear", "perceptual"}
+        Whether ink replaces the picture's light or its encoded values.
+    first_dots : str
+        One of `stippler.stippling.stipple.FIRST_DOTS`.
+
+    Returns
+    -------
+    Drawing
+
+    Raises
+    ------
+    PictureError
+        If the picture cannot be read.
+    ParameterError
+        If a value is outside its range.
+
+    Notes
+    -----
+    Deussen et al. 2000, sections 4.2 and 4.3.
+    """
+    plan = Plan(
+        n_dots=dots,
+        size_range_mm=size_range,
+        iterations=iterations,
+        seed=seed,
+        first_dots=first_dots,
+    )
+    return draw(image, plan, tone=tone, width_mm=width)[0]
+
+
+def draw(
+    image: Any,
+    plan: Plan,
+    *,
+    tone: str,
+    width_mm: float,
+    show: Callable[[str, int, int], None] | None = None,
+) -> tuple[Drawing, tuple[str, ...]]:
+    """Carry out a plan; return the drawing and what the person should know about it."""
+    reference = Reference(_darkness(image, tone), width_mm)
+    last: Progress | None = None
+    for last in stages(reference, plan, snapshots=False):
+        if show is not None:
+            show(last.stage, last.done, last.total)
+    assert last is not None, "stages() yields at least its end"
+    return Drawing.from_reference(
+        reference, last.position_mm, last.radius_mm, _style(last.radius_mm, plan)
+    ), notes_on(last)
+
+
+def notes_on(result: Progress) -> tuple[str, ...]:
+    """Say in words what a finished run fell short of."""
+    lack = result.shortfall
+    if lack is None:
+        return ()
+    notes = list(lack.notes)
+    if lack.share > 0.0005:
+        notes.append(
+            f"{100 * lack.share:.1f} % of the page is too dark for these dots "
+            f"(by {lack.missing:.2f} of 1); allow larger dots, or more of them"
+        )
+    return tuple(notes)
+
+
+def pulse_density(
+    image: Any, dots: int = 20_000, *, tone: Tone = "linear"
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Halftone a picture into dots by pulse-density modulation, without relaxation.
+
+    Parameters
+    ----------
+    image : path, Pillow image or array
+        As for `stipple`.
+    dots : int
+        How many; met within 1 %.
+
+    Returns
+    -------
+    points : (n, 2) float64, px
+        Centres, x right and y down, (0, 0) at the top left corner of the picture.
+    radii : (n,) float64, px
+
+    Notes
+    -----
+    Deussen et al. 2000, section 4.2; Eschbach 1990.
+    """
+    from stippler.stippling.halftone import pulse_density as halftone
+
+    return halftone(_darkness(image, tone), dots)
+
+
+def relax(points: ArrayLike, polygon: Any, *args: Any, **kwargs: Any) -> NDArray[np.float64]:
+    """Move points to the centroids of their cells; see `stippler.stippling.relax.relax`."""
+    from stippler.stippling.relax import relax as run
+
+    return run(points, polygon, *args, **kwargs)
+
+
+def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
+    from PIL import Image
+
+    from stippler.files import picture
+
+    picture.check_tone(tone)
+    if isinstance(image, str | PathLike):
+        return picture.read_darkness(Path(image), tone)
+    if isinstance(image, Image.Image):
+        return picture.darkness_of_image(image, tone)
+    if image is None:
+        raise ParameterError("is missing", "image", "give a path, a Pillow image or an array")
+    return picture.darkness_of_array(image, tone)
+
+
+def _style(radius_mm: NDArray[np.float32], plan: Plan) -> Style | None:
+    """Return the size range the dots were drawn with."""
+    if plan.size_range_mm is not None:
+        return Style(*plan.size_range_mm)
+    if not len(radius_mm):
+        return None
+    return Style(float(radius_mm.min()), float(radius_mm.max()))

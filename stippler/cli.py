@@ -1,0 +1,217 @@
+"""The command line: edit, render, bench and info."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+from typer.exceptions import TyperException
+
+from stippler.errors import ParameterError, StipplerError
+
+if TYPE_CHECKING:
+    from stippler.stippling.stipple import Plan
+
+DEFAULT_WIDTH_MM = 148.0  # A5
+
+
+COMMANDS = ("edit", "render", "bench", "info")
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=False,
+    rich_markup_mode=None,
+    help="Stipple drawings: tens of thousands of ink dots, from a picture or by hand.",
+)
+
+Dots = Annotated[
+    int | None, typer.Option(help="Number of dots; 20,000, or what --size-range asks for.")
+]
+SizeRange = Annotated[
+    str | None,
+    typer.Option(metavar="MIN:MAX", help="Dot radii in mm; 1:2, as large as --dots asks for."),
+]
+Width = Annotated[float, typer.Option(help="Page width in mm; the height follows.")]
+Iterations = Annotated[int, typer.Option(help="Relaxation steps.")]
+Seed = Annotated[int, typer.Option(help="Same seed, same drawing.")]
+ToneOption = Annotated[
+    str, typer.Option(metavar="linear|perceptual", help="Ink for light, or for the file's numbers.")
+]
+FirstDots = Annotated[str, typer.Option(metavar="METHOD", help="How the first dots are set.")]
+
+
+def _version(shown: bool) -> None:
+    if shown:
+        from stippler import __version__
+
+        typer.echo(f"stippler {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def edit(
+    file: Annotated[Path | None, typer.Argument(help="A picture; without one, a sample.")] = None,
+    dots: Dots = None,
+    size_range: SizeRange = None,
+    width: Width = DEFAULT_WIDTH_MM,
+    iterations: Iterations = 20,
+    seed: Seed = 1,
+    tone: ToneOption = "linear",
+    first_dots: FirstDots = "pulse-density",
+) -> None:
+    """Open the editor."""
+    plan = _plan(dots, size_range, iterations, seed, first_dots)
+    _check_page(tone, width)
+    if file is not None:
+        from stippler.files.picture import check_picture
+
+        check_picture(file)  # before a window opens
+    from stippler.app import edit as open_editor
+
+    raise typer.Exit(open_editor(file or _sample(), plan, tone=tone, width_mm=width))
+
+
+@app.command()
+def render(
+    file: Annotated[Path, typer.Argument(help="A picture.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Drawing to write: .svg, .png or .csv.")
+    ],
+    dots: Dots = None,
+    width: Width = DEFAULT_WIDTH_MM,
+    iterations: Iterations = 20,
+    seed: Seed = 1,
+    dpi: Annotated[float, typer.Option(help="Pixels an inch of a .png.")] = 300.0,
+    tone: ToneOption = "linear",
+    size_range: SizeRange = None,
+    first_dots: FirstDots = "pulse-density",
+) -> None:
+    """Turn a picture into a drawing, without a window."""
+    from stippler.export import check_output
+
+    check_output(output, dpi)
+    plan = _plan(dots, size_range, iterations, seed, first_dots)
+    _check_page(tone, width)
+    from stippler.progress import stages_shown
+
+    with stages_shown() as show:
+        from stippler.api import draw
+
+        show("picture", 0, 1)
+        drawing, notes = draw(file, plan, tone=tone, width_mm=width, show=show)
+        show("write", 0, 1)
+        drawing.save(output, dpi=dpi)
+        show("write", 1, 1)
+    for note in notes:
+        typer.echo(f"stippler: {file}: {note}", err=True)
+
+
+@app.command()
+def bench(
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    quick: Annotated[bool, typer.Option(help="Smaller sizes.")] = False,
+    only: Annotated[str, typer.Option(help="Topics, by comma.")] = "",
+) -> None:
+    """Measure every performance figure on this machine."""
+    from stippler.resources import benchmarks
+
+    sys.path.insert(0, str(benchmarks().parent))
+    from benchmarks.all import main as run  # type: ignore[import-not-found,unused-ignore]
+
+    raise typer.Exit(run(as_json=as_json, quick=quick, only=only))
+
+
+@app.command()
+def info() -> None:
+    """Show versions, GL, cores and folders."""
+    from stippler.about import lines
+
+    for line in lines():
+        typer.echo(line)
+
+
+def _sample() -> Path:
+    from stippler.resources import assets
+
+    return assets() / "samples" / "ammonite.png"
+
+
+def _plan(
+    dots: int | None, size_range: str | None, iterations: int, seed: int, first_dots: str
+) -> Plan:
+    from stippler.stippling.stipple import Plan
+
+    return Plan(
+        n_dots=dots,
+        size_range_mm=_size_range(size_range),
+        iterations=iterations,
+        seed=seed,
+        first_dots=first_dots,
+    )
+
+
+def _size_range(text: str | None) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    low, _, high = text.partition(":")
+    try:
+        return float(low), float(high or low)
+    except ValueError:
+        raise ParameterError(
+            f"{text!r} is no range", "size range", "give MIN:MAX in mm, such as 0.15:0.3"
+        ) from None
+
+
+def _check_page(tone: str, width_mm: float) -> None:
+    from stippler.drawing.drawing import Page
+    from stippler.files.picture import check_tone
+
+    check_tone(tone)
+    Page(width_mm, 1.0)
+
+
+def _terminate(signum: int, frame: Any) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+def main() -> None:
+    """Run the command line and end the process: 0 done, 1 failed, 2 usage, 130 interrupted."""
+    signal.signal(signal.SIGTERM, _terminate)
+    args = sys.argv[1:]
+    if not args or args[0] not in (*COMMANDS, "--help", "--version"):
+        args = ["edit", *args]  # `stippler photo.jpg`
+    try:
+        status = app(args, standalone_mode=False)
+    except TyperException as error:
+        status = _fail(error.format_message(), error.exit_code, f"see stippler {args[0]} --help")
+    except ParameterError as error:
+        status = _fail(str(error), 2)
+    except StipplerError as error:
+        status = _fail(str(error), 1)
+    except (KeyboardInterrupt, typer.Abort):
+        status = _fail("stopped; nothing was written", 130)
+    except MemoryError:
+        status = _fail("not enough memory; ask for fewer dots or a smaller picture", 1)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 1
+    sys.exit(status or 0)
+
+
+def _fail(message: str, status: int, do: str = "") -> int:
+    line = f"stippler: {message.rstrip('.')}{'; ' + do if do else ''}"
+    typer.echo(" ".join(line.split()), err=True)
+    return status

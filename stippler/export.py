@@ -1,0 +1,65 @@
+"""A drawing to a file, by the file's ending."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from stippler.drawing.drawing import Drawing
+from stippler.errors import OutputError, ParameterError
+from stippler.files.output import check_writable, replacing
+
+ENDINGS = (".svg", ".png", ".csv")
+DEFAULT_DPI = 300.0
+
+
+def check_ending(path: str | Path) -> str:
+    """Return a file's ending in small letters, or raise `OutputError` if none writes it."""
+    ending = Path(path).suffix.lower()
+    if ending not in ENDINGS:
+        what = f"the ending {ending!r} is not written" if ending else "the name has no ending"
+        raise OutputError(what, path, f"end it in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
+    return ending
+
+
+def check_output(path: str | Path, dpi: float = DEFAULT_DPI) -> None:
+    """Raise now what `save` would raise later: a wrong ending, folder or resolution."""
+    check_ending(path)
+    if not (math.isfinite(dpi) and dpi > 0):
+        raise ParameterError(f"{dpi:g} is no resolution", "dpi", "give a number above 0")
+    check_writable(path)
+
+
+def save(drawing: Drawing, path: str | Path, *, dpi: float = DEFAULT_DPI) -> None:
+    """Write a drawing as SVG, PNG or CSV, whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        Its ending chooses the format.
+    dpi : float
+        Pixels an inch of a PNG; ignored for others.
+
+    Raises
+    ------
+    OutputError
+        If the ending is unknown or the file cannot be written; what stood there stays.
+    ParameterError
+        If `dpi` is not a finite number above 0.
+    DisplayError
+        If a PNG is asked for and there is no OpenGL.
+    """
+    check_output(path, dpi)
+    ending = check_ending(path)
+    if ending == ".png":
+        _save_png(drawing, path, dpi)
+        return
+    with replacing(path) as stream:
+        if ending == ".svg":
+            from stippler.files.svg import svg_chunks
+
+            stream.writelines(svg_chunks(drawing))
+        else:
+            from stippler.files.table import csv_chunks
+
+            stream.writelines(csv_chunks(drawing.dots))
