@@ -1,0 +1,53 @@
+# make run    the editor on a sample; without a display, the sample drawn into out/
+# make test   every test, without a screen
+# make check  lint, types, import contracts
+# make bench  every performance figure
+.PHONY: run test check bench clean
+.DEFAULT_GOAL := run
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+SAMPLE := assets/samples/ammonite.png
+
+run: $(VENV)/ready
+	@setup/system-libraries
+	@$(BIN)/python -m stippler.warm
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname -s)" = Darwin ]; then \
+		$(BIN)/stippler edit $(SAMPLE); \
+	else \
+		mkdir -p out; \
+		echo "No display: drawing $(SAMPLE) without a window."; \
+		$(BIN)/stippler render $(SAMPLE) -o out/ammonite.svg --dots 60000 && \
+		$(BIN)/stippler render $(SAMPLE) -o out/ammonite.png --dots 60000 && \
+		echo "Look at out/ammonite.svg and out/ammonite.png."; \
+	fi
+
+test: $(VENV)/ready-dev
+	@setup/system-libraries test
+	@$(BIN)/python -m stippler.warm
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+check: $(VENV)/ready-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/ready-dev
+	@setup/system-libraries test
+	@$(BIN)/python -m stippler.warm
+	$(BIN)/stippler bench
+
+$(VENV)/ready: pyproject.toml
+	@echo "Setting up $(VENV) (once) ..."
+	@[ -x $(BIN)/python ] || setup/environment $(VENV)
+	@$(PIP) -e .
+	@touch $@
+
+$(VENV)/ready-dev: $(VENV)/ready
+	@$(PIP) --group dev
+	@touch $@
+
+clean:
+	rm -rf $(VENV) out dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis tests/failed
