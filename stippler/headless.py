@@ -1,0 +1,119 @@
+"""Drawings to pixels without a window."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.camera import Camera, Size
+from stippler.drawing.drawing import Drawing
+from stippler.errors import DisplayError, ParameterError
+from stippler.render.paper import Color
+from stippler.render.renderer import Renderer
+
+MAX_SIDE_PX = 100_000
+_STRIP_PX = 4_000_000  # pixels in one strip
+
+WHITE: Color = (1.0, 1.0, 1.0)
+BLACK: Color = (0.0, 0.0, 0.0)
+
+
+def open_context() -> moderngl.Context:
+    """Open a GL context without a window or a display.
+
+    Raises
+    ------
+    DisplayError
+        If there is no OpenGL 3.3 to be had.
+    """
+    try:
+        ctx = moderngl.create_standalone_context(require=330, backend="egl")
+    except Exception as error:  # noqa: BLE001 - the backend raises bare Exception
+        raise DisplayError(
+            f"no OpenGL 3.3 ({str(error).strip() or type(error).__name__})",
+            do="on Debian or Ubuntu: apt install libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri"
+            " libglx-mesa0",
+        ) from error
+    return ctx
+
+
+def image_size(drawing: Drawing, px_per_mm: float) -> Size:
+    """Return the (width, height) in pixels of the page at a scale."""
+    page = drawing.page
+    size = [round(side * px_per_mm) for side in (page.width_mm, page.height_mm)]
+    width, height = (max(side, 1) for side in size)
+    if not 0 < px_per_mm < float("inf") or max(width, height) > MAX_SIDE_PX:
+        raise ParameterError(
+            f"{px_per_mm:g} pixels a mm make no picture of this page",
+            do=f"keep its longer side between 1 and {MAX_SIDE_PX} pixels",
+        )
+    return width, height
+
+
+def render_strips(
+    drawing: Drawing,
+    *,
+    px_per_mm: float,
+    paper: Color = WHITE,
+    ink: Color = BLACK,
+    context: moderngl.Context | None = None,
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield the picture of the page from top to bottom in strips of (rows, width, 3) uint8.
+
+    Parameters
+    ----------
+    context : moderngl.Context, optional
+        One to draw in; else one is opened and released.
+    """
+    size = image_size(drawing, px_per_mm)
+    ctx = context or open_context()
+    try:
+        yield from _strips(ctx, drawing, px_per_mm, size, paper, ink)
+    finally:
+        if context is None:
+            ctx.release()
+
+
+def _strips(
+    ctx: moderngl.Context, drawing: Drawing, scale: float, size: Size, paper: Color, ink: Color
+) -> Iterator[NDArray[np.uint8]]:
+    rows = min(max(_STRIP_PX // size[0], 16), size[1])
+    page = drawing.page
+    whole = Camera((page.width_mm / 2, page.height_mm / 2), scale)
+    renderer = Renderer(ctx)
+    target = ctx.simple_framebuffer((size[0], rows), 3)
+    try:
+        renderer.set_page(page.width_mm, page.height_mm)
+        renderer.set_dots(drawing.dots)
+        for top in range(0, size[1], rows):
+            camera = whole.tile((0, top), (size[0], rows), size)
+            renderer.draw(camera, (size[0], rows), target, paper=paper, desk=paper, ink=ink)
+            pixels = np.frombuffer(target.read(components=3, alignment=1), np.uint8)
+            yield pixels.reshape(rows, size[0], 3)[::-1][: size[1] - top]
+    finally:
+        target.release()
+        renderer.release()
+
+
+def render_image(
+    drawing: Drawing,
+    *,
+    px_per_mm: float,
+    paper: Color = WHITE,
+    ink: Color = BLACK,
+    context: moderngl.Context | None = None,
+) -> NDArray[np.uint8]:
+    """Return the picture of the page as (height, width, 3) uint8.
+
+    Parameters
+    ----------
+    px_per_mm : float
+        Resolution; `stippler.units.px_per_mm` takes dots per inch.
+    paper, ink : (r, g, b)
+        0..1, encoded for display.
+    """
+    strips = render_strips(drawing, px_per_mm=px_per_mm, paper=paper, ink=ink, context=context)
+    return np.concatenate(list(strips))

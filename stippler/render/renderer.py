@@ -1,0 +1,111 @@
+"""The passes of one frame and their order: paper, reference, dots, overlays."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stippler.camera import Camera, Size
+from stippler.drawing.dots import Dots
+from stippler.drawing.pens import Preview
+from stippler.drawing.reference import Reference
+from stippler.render.dots import DotsPass
+from stippler.render.paper import Color, PaperPass
+from stippler.render.reference import ReferencePass
+
+PAPER: Color = (0.984, 0.980, 0.965)
+DESK: Color = (0.827, 0.816, 0.792)
+INK: Color = (0.086, 0.082, 0.094)
+
+
+class Renderer:
+    """Draws a page, its reference and its dots into any framebuffer of one GL context.
+
+    Everything is uploaded by the `set_` methods; `draw` only draws. Each pass sets all the GL
+    state it needs, so other code may draw into the same context before and after.
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._page_mm = (1.0, 1.0)
+        self._opacity = 0.0
+        self._paper = PaperPass(ctx)
+        self._reference = ReferencePass(ctx)
+        self._dots = DotsPass(ctx)
+        self._preview: Preview | None = None
+
+    @property
+    def n_dots(self) -> int:
+        """How many dots are uploaded."""
+        return self._dots.buffers.n
+
+    def set_page(self, width_mm: float, height_mm: float) -> None:
+        """Set the size of the paper; call it before `set_dots`."""
+        self._page_mm = (float(width_mm), float(height_mm))
+
+    def set_reference(self, reference: Reference | None, opacity: float = 0.25) -> None:
+        """Show a reference under the dots; cheap if it is the one already shown."""
+        self._reference.set(reference)
+        self._opacity = float(opacity)
+
+    def set_dots(self, dots: Dots) -> None:
+        """Upload all dots."""
+        self._dots.set(dots, self._origin_mm)
+
+    def set_positions(self, position_mm: ArrayLike, radius_mm: ArrayLike) -> None:
+        """Upload round dots, as a worker hands them back while it is at work."""
+        position: NDArray[np.float64] = np.ascontiguousarray(position_mm, np.float64)
+        radius = np.ascontiguousarray(
+            np.broadcast_to(np.asarray(radius_mm, np.float32), (len(position),))
+        )
+        self._dots.set_positions(position, radius, self._origin_mm)
+
+    def update_dots(self, dots: Dots, rows: NDArray[np.intp]) -> None:
+        """Upload only the given rows, or all where the number of dots has changed."""
+        self._dots.set(dots, self._origin_mm)
+
+    def set_preview(self, preview: Preview | None) -> None:
+        """Show dots as a brush would leave them; by uniforms only."""
+        self._preview = preview
+
+    def draw(
+        self,
+        camera: Camera,
+        size_px: Size,
+        framebuffer: moderngl.Framebuffer | None = None,
+        *,
+        paper: Color = PAPER,
+        desk: Color = DESK,
+        ink: Color = INK,
+    ) -> None:
+        """Draw one frame.
+
+        Parameters
+        ----------
+        framebuffer : moderngl.Framebuffer, optional
+            The context's screen if not given; left in use.
+        paper, desk, ink : (r, g, b)
+            0..1, encoded for display.
+        """
+        ctx = self._ctx
+        ctx.wireframe = False
+        self._dots.gather(camera, size_px, self._origin_mm)
+        target = framebuffer or ctx.screen
+        target.use()
+        target.scissor = None
+        target.viewport = (0, 0, *size_px)
+        target.color_mask = True, True, True, True
+        target.clear(*desk, 1.0)
+        self._paper.draw(camera, size_px, self._page_mm, paper, desk)
+        self._reference.draw(camera, size_px, self._opacity, ink)
+        self._dots.lay(camera, size_px, self._page_mm, ink)
+
+    @property
+    def _origin_mm(self) -> tuple[float, float]:
+        return (self._page_mm[0] / 2, self._page_mm[1] / 2)
+
+    def release(self) -> None:
+        """Free every GL object."""
+        for one in (self._dots, self._reference, self._paper):
+            one.release()
