@@ -1,0 +1,68 @@
+"""What the editor has to say to the person, newest last."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+INFO, WARNING, ERROR = "info", "warning", "error"
+_SHOWN_S = {INFO: 6.0, WARNING: 15.0, ERROR: 30.0}
+_KEPT = 200
+
+_log = logging.getLogger("stippler")
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One line, with how grave it is and when it was said."""
+
+    level: str
+    text: str
+    at_s: float
+
+
+class Messages:
+    """The log; `current` is the line to show now.
+
+    Parameters
+    ----------
+    clock : callable
+        Seconds, never going back.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._seen = False
+        self.log: deque[Message] = deque(maxlen=_KEPT)
+
+    def say(self, text: str, level: str = INFO, error: BaseException | None = None) -> None:
+        """Add a line; one that repeats the last only shows it for longer."""
+        line = Message(level, " ".join(text.split()), self._clock())
+        if self.log and (self.log[-1].level, self.log[-1].text) == (level, line.text):
+            self.log.pop()
+        elif level == ERROR:
+            _log.error("%s", line.text, exc_info=error)
+        self.log.append(line)
+        self._seen = False
+
+    def dismiss(self) -> None:
+        """Take the current line off; the log keeps it."""
+        self._seen = True
+
+    @property
+    def current(self) -> Message | None:
+        """The line to show now, if any."""
+        if self._seen or not self.log:
+            return None
+        return self.log[-1] if self.left_s > 0.0 else None
+
+    @property
+    def left_s(self) -> float:
+        """How long the current line is still to be shown."""
+        if self._seen or not self.log:
+            return 0.0
+        last = self.log[-1]
+        return max(last.at_s + _SHOWN_S[last.level] - self._clock(), 0.0)

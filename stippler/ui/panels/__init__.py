@@ -1,0 +1,1 @@
+"""Panels: functions that draw one section each and call the session or a command."""

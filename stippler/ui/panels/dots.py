@@ -1,0 +1,163 @@
+"""The dots: the plan, and starting, pausing and stopping the work on it."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+from imgui_bundle import imgui
+
+from stippler.ui import work
+from stippler.ui.commands import Commands
+from stippler.ui.session import Session
+from stippler.ui.theme import ICON_DICE, ICON_PAUSE, ICON_PLAY, ICON_STOP
+from stippler.ui.widgets import Widgets
+
+_FIRST_DOTS = ("pulse-density", "floyd-steinberg", "random", "hexagonal")
+_FIRST_DOTS_LABELS = ("Pulse density", "Floyd–Steinberg", "Random", "Hexagonal")
+_RADII_MM = (0.02, 2.0)  # what the slider offers; typing takes more
+_USUAL_RANGE_MM = (0.12, 0.24)
+_USUAL_DOTS = 20_000
+_STAGES = {
+    work.READ: "reading the picture",
+    work.PREPARE: "preparing kernels (once)",
+    "first dots": "first dots",
+    "relax": "relaxing",
+    "tone": "matching the tone",
+    "done": "done",
+}
+
+
+def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
+    """Draw the section."""
+    widgets.heading("Dots")
+    plan = session.plan
+    changes: dict[str, Any] = {}
+    _draw_number(widgets, session, changes)
+    _draw_sizes(widgets, session, changes)
+    chosen = widgets.choice(
+        "First dots",
+        _FIRST_DOTS_LABELS,
+        _FIRST_DOTS.index(plan.first_dots),
+        "How the dots are set before they relax. Pulse density follows the picture best.",
+    )
+    changes["first_dots"] = _FIRST_DOTS[chosen]
+    changes["iterations"] = widgets.number(
+        "Iterations", plan.iterations, "Relaxation steps: each makes the spacing more even. "
+        "10 to 20 suffice.",
+    )
+    _draw_seed(widgets, session, changes)
+    changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
+    if changed:
+        session.edit_plan(**changed)
+    imgui.dummy((0.0, 2.0 * widgets.scale))
+    _draw_buttons(widgets, session, commands)
+    _draw_progress(widgets, session)
+
+
+def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    plan = session.plan
+    follows = plan.n_dots is None and plan.size_range_mm is not None
+    shown = session.n_dots if follows else plan.n_dots or _USUAL_DOTS
+    imgui.begin_disabled(follows)
+    typed = widgets.number(
+        "Number",
+        shown,
+        "How many dots. " + ("Follows from the sizes now." if follows else "Met within 1 %."),
+    )
+    imgui.end_disabled()
+    if not follows and typed != shown:
+        changes["n_dots"] = typed
+
+
+def _draw_sizes(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    plan = session.plan
+    chosen = widgets.segments(
+        "Sizes",
+        ("Automatic", "In mm"),
+        int(plan.size_range_mm is not None),
+        (
+            "Radii in a range of 1:2 that meets the picture's tone with the number of dots.",
+            "Radii in a range that you give, as your pens or your printer draw them.",
+        ),
+    )
+    if chosen == 0:
+        if plan.size_range_mm is not None:
+            changes["size_range_mm"] = None
+            changes["n_dots"] = plan.n_dots or _USUAL_DOTS
+        return
+    low, high = plan.size_range_mm or _USUAL_RANGE_MM
+    widgets.label("Radius")
+    _, low, high = imgui.drag_float_range2(
+        "##Radius", low, high, 0.002, *_RADII_MM, "%.3f mm", "%.3f mm",
+        imgui.SliderFlags_.always_clamp,
+    )
+    widgets.note("Radius")
+    widgets.tip("Smallest and largest radius in mm. Drag; a double click types.")
+    changes["size_range_mm"] = (round(low, 4), round(max(low, high), 4))
+    imgui.dummy((0.0, 0.0))
+    imgui.same_line(widgets.indent)
+    free = widgets.check(
+        "As many dots as it takes", plan.n_dots is None, "The number follows from sizes and tone."
+    )
+    if free != (plan.n_dots is None):
+        changes["n_dots"] = None if free else session.n_dots or _USUAL_DOTS
+
+
+def _draw_seed(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    side = imgui.get_frame_height()
+    changes["seed"] = widgets.number(
+        "Seed",
+        session.plan.seed,
+        "Chooses what is left to chance; the same seed gives the same drawing.",
+        spare=side + 8.0 * widgets.scale,
+    )
+    imgui.same_line()
+    if widgets.button("##Another seed", "Another seed, by chance.", icon=ICON_DICE, width=side):
+        changes["seed"] = random.randrange(1, 1_000_000)
+
+
+def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> None:
+    gap = 8.0 * widgets.scale
+    width = (imgui.get_content_region_avail().x - gap) / 2
+    if session.phase == "running":
+        if widgets.button("Pause", commands["work.pause"].hint, icon=ICON_PAUSE, width=width):
+            session.pause()
+    elif session.phase == "paused":
+        if widgets.button(
+            "Resume", commands["work.pause"].hint, icon=ICON_PLAY, width=width, primary=True
+        ):
+            session.resume()
+    elif widgets.button(
+        "Start",
+        f"{commands['work.start'].hint}: stipple the picture with the values above.",
+        icon=ICON_PLAY,
+        width=width,
+        primary=True,
+        enabled=session.source is not None,
+    ):
+        session.start()
+    imgui.same_line(0.0, gap)
+    if widgets.button(
+        "Stop",
+        "End the work; the dots that are there stay.",
+        icon=ICON_STOP,
+        width=width,
+        enabled=session.busy,
+    ):
+        session.stop()
+
+
+def _draw_progress(widgets: Widgets, session: Session) -> None:
+    if session.busy:
+        share = session.done / session.total if session.total else -imgui.get_time()
+        text = _STAGES.get(session.stage, session.stage)
+        if session.stage == "relax":
+            text = f"{text}, step {session.done} of {session.total}"
+        widgets.progress(share, f"{text} (paused)" if session.phase == "paused" else text)
+        if session.outdated and widgets.button(
+            "Restart", "Begin again with the values above.", width=-1.0
+        ):
+            session.start()
+    elif session.outdated and session.n_dots:
+        widgets.caption("Start again to use the changed values.")

@@ -1,0 +1,79 @@
+"""The picture: what is open, how tone is taken from it, and where the drawing goes."""
+
+from __future__ import annotations
+
+import math
+
+from imgui_bundle import imgui
+
+from stippler.drawing.drawing import MAX_PAGE_MM
+from stippler.ui.commands import Commands
+from stippler.ui.session import Session
+from stippler.ui.theme import ICON_OPEN, ICON_SAVE
+from stippler.ui.widgets import Widgets
+
+_TONES = ("linear", "perceptual")
+_TONE_TIPS = (
+    "The ink covers as much of the paper as the picture's light is missing: right at arm's length.",
+    "The ink follows the numbers in the file: darker, as if each grey value were a share of ink.",
+)
+
+
+def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None:
+    """Draw the section."""
+    widgets.heading("Picture")
+    _draw_name(widgets, session)
+    width = (imgui.get_content_region_avail().x - 8 * widgets.scale) / 2
+    if widgets.button(
+        "Open", f"{commands['file.open'].hint}; or drop one on the window.", icon=ICON_OPEN,
+        width=width,
+    ):
+        commands["file.open"].run()
+    imgui.same_line()
+    if widgets.button(
+        "Export",
+        f"{commands['file.export'].hint}: SVG, PNG or CSV.",
+        icon=ICON_SAVE,
+        width=width,
+        enabled=session.n_dots > 0,
+    ):
+        commands["file.export"].run()
+    chosen = widgets.segments(
+        "Tone", ("Linear", "Perceptual"), _TONES.index(session.tone), _TONE_TIPS
+    )
+    session.tone = _TONES[chosen]
+    typed = widgets.length(
+        "Width", session.width_mm, "Width of the page in mm; its height follows from the picture."
+    )
+    if math.isfinite(typed) and typed > 0:
+        session.width_mm = min(typed, MAX_PAGE_MM)
+
+
+def _draw_name(widgets: Widgets, session: Session) -> None:
+    if not session.name:
+        widgets.caption("Nothing is open. Drop a picture on the window.")
+        return
+    imgui.text_unformatted(_shortened(session.name, imgui.get_content_region_avail().x))
+    widgets.tip(session.name)
+    reference = session.reference
+    if reference is not None:
+        rows, columns = reference.darkness.shape
+        widgets.caption(
+            f"{columns:,} × {rows:,} px  ·  "
+            f"{reference.width_mm:.4g} × {reference.height_mm:.4g} mm"
+        )
+    else:
+        widgets.caption("being read …")
+
+
+def _shortened(text: str, width: float) -> str:
+    """Leave out the middle of a text that is too wide."""
+    if imgui.calc_text_size(text).x <= width:
+        return text
+    keep = len(text) - 1
+    while keep > 4:
+        head, tail = text[: (keep + 1) // 2], text[len(text) - keep // 2 :]
+        if imgui.calc_text_size(f"{head}…{tail}").x <= width:
+            return f"{head}…{tail}"
+        keep -= 1
+    return text[:4]

@@ -1,0 +1,118 @@
+"""How the person looks at the page: a camera, its limits, and its way to where it should be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from stippler.camera import Camera, Paper, Point, Size
+
+MARGIN = 0.06  # of the smaller side, around the fitted page
+MAX_PX_PER_MM = 2_000.0
+SMALLEST_OF_FIT = 0.1  # zooming out ends where the page is a tenth of the fitted one
+_SETTLE_S = 0.06  # in this time a smooth zoom covers 63 % of what is left
+_CLOSE_ENOUGH = 0.002  # of the logarithm of the scale
+
+
+class View:
+    """A camera on a canvas of `size_px`.
+
+    Attributes
+    ----------
+    camera : Camera
+        What the next frame shows.
+    following : bool
+        Whether the page is kept fitted as the canvas changes size; until the person moves.
+    """
+
+    def __init__(self, paper: Paper, size_px: Size) -> None:
+        self._paper, self._size_px = paper, size_px
+        self._to_go = 0.0  # logarithm of the zoom that is still to come
+        self._at_px: Point = (0.0, 0.0)
+        self.following = True
+        self.camera = self._fitted()
+
+    @property
+    def size_px(self) -> Size:
+        """Size of the canvas."""
+        return self._size_px
+
+    @property
+    def moving(self) -> bool:
+        """Whether the next frame will look different without any input."""
+        return self._to_go != 0.0
+
+    def show(self, paper: Paper) -> None:
+        """Look at another page: fitted, if its size is not that of the last one."""
+        size = (paper.width_mm, paper.height_mm)
+        if size != (self._paper.width_mm, self._paper.height_mm):
+            self._paper = paper
+            self.fit()
+
+    def resize(self, size_px: Size) -> None:
+        """Take the canvas's new size; what was in the middle stays there."""
+        size_px = (max(size_px[0], 1), max(size_px[1], 1))
+        if size_px != self._size_px:
+            self._size_px = size_px
+            if self.following:
+                self.fit()
+
+    def fit(self) -> None:
+        """Show the whole page, upright as it is turned now."""
+        self.following, self._to_go = True, 0.0
+        turned = (self.camera.rotation_rad, self.camera.flip)
+        self.camera = replace(self._fitted(), rotation_rad=turned[0], flip=turned[1])
+
+    def print_size(self, px_per_mm: float) -> None:
+        """Show the page as large as it will be printed, about the middle of the canvas."""
+        self.following, self._to_go = False, 0.0
+        self.camera = replace(self.camera, px_per_mm=px_per_mm)
+        self._hold()
+
+    def pan(self, delta_px: Point) -> None:
+        """Move the page by a vector on the screen; part of it stays in sight."""
+        self.following = False
+        self.camera = self.camera.panned(delta_px)
+        self._hold()
+
+    def zoom(self, factor: float, at_px: Point) -> None:
+        """Ask for a larger or smaller page; it gets there over the next frames."""
+        if not (math.isfinite(factor) and factor > 0):
+            return
+        self.following = False
+        low, high = self._limits()
+        now = math.log(self.camera.px_per_mm)
+        target = min(max(now + self._to_go + math.log(factor), math.log(low)), math.log(high))
+        self._to_go, self._at_px = target - now, at_px
+
+    def advance(self, dt_s: float) -> bool:
+        """Go on with a smooth zoom; return whether the camera moved."""
+        if not self._to_go:
+            return False
+        share = 1.0 - math.exp(-max(dt_s, 0.0) / _SETTLE_S)
+        step = self._to_go * share
+        if abs(self._to_go - step) < _CLOSE_ENOUGH:
+            step = self._to_go
+        self._to_go -= step
+        self.camera = self.camera.zoomed(math.exp(step), self._at_px, self._size_px)
+        self._hold()
+        return True
+
+    def at(self, x_px: float, y_px: float) -> Point:
+        """Return the point of the page under a pixel of the canvas."""
+        x, y = self.camera.screen_to_page((x_px, y_px), self._size_px)
+        return float(x), float(y)
+
+    def _fitted(self) -> Camera:
+        return Camera.fit(self._paper, self._size_px, MARGIN * min(self._size_px))
+
+    def _limits(self) -> tuple[float, float]:
+        fitted = self._fitted().px_per_mm
+        return fitted * SMALLEST_OF_FIT, max(MAX_PX_PER_MM, fitted)
+
+    def _hold(self) -> None:
+        """Keep the middle of the canvas on the page."""
+        x, y = self.camera.center_mm
+        center = (min(max(x, 0.0), self._paper.width_mm), min(max(y, 0.0), self._paper.height_mm))
+        if center != (x, y):
+            self.camera = replace(self.camera, center_mm=center)

@@ -1,0 +1,176 @@
+"""The controls that panels are made of: one look, tooltips that name effect and unit.
+
+Every control leaves the rectangle it took under its label in `marks`, so that scripted input can
+find it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from imgui_bundle import imgui
+
+from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
+
+Rect = tuple[float, float, float, float]
+LABEL_WIDTH = 84.0
+
+
+@dataclass(slots=True)
+class Widgets:
+    """Draws controls in the current ImGui window.
+
+    Attributes
+    ----------
+    marks : dict
+        Label to (x0, y0, x1, y1), in ImGui's coordinates, of what was drawn this frame.
+    """
+
+    theme: Theme
+    fonts: Fonts
+    scale: float
+    marks: dict[str, Rect] = field(default_factory=dict)
+
+    @property
+    def indent(self) -> float:
+        """Where the controls begin to the right of their labels."""
+        return LABEL_WIDTH * self.scale
+
+    # --- text -------------------------------------------------------------------------------
+
+    def heading(self, text: str) -> None:
+        """Begin a section."""
+        imgui.dummy((0.0, 4.0 * self.scale))
+        imgui.push_font(self.fonts.heading, TEXT_PX)
+        imgui.text(text)
+        imgui.pop_font()
+
+    def caption(self, text: str, colour: Colour | None = None) -> None:
+        """Write a small line that wraps."""
+        imgui.push_font(None, SMALL_PX)
+        imgui.push_style_color(imgui.Col_.text, (*(colour or self.theme.faint), 1.0))
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.pop_style_color()
+        imgui.pop_font()
+
+    def label(self, text: str) -> None:
+        """Write what the control to the right is for, and give that the rest of the line."""
+        imgui.align_text_to_frame_padding()
+        imgui.text_colored((*self.theme.faint, 1.0), text)
+        imgui.same_line(self.indent)
+        imgui.set_next_item_width(-1.0)
+
+    def tip(self, text: str) -> None:
+        """Explain the last control when the pointer rests on it."""
+        if imgui.is_item_hovered(
+            imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
+        ):
+            imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
+            if imgui.begin_tooltip():
+                imgui.push_text_wrap_pos(280.0 * self.scale)
+                imgui.text_unformatted(text)
+                imgui.pop_text_wrap_pos()
+                imgui.end_tooltip()
+            imgui.pop_style_var()
+
+    # --- controls ---------------------------------------------------------------------------
+
+    def button(
+        self, label: str, tip: str, *, icon: str = "", width: float = 0.0, primary: bool = False,
+        enabled: bool = True,
+    ) -> bool:
+        """Draw a button; return whether it was pressed. A width of -1 takes the rest."""
+        if primary and enabled:
+            accent = self.theme.accent
+            imgui.push_style_color(imgui.Col_.button, (*accent, 1.0))
+            imgui.push_style_color(imgui.Col_.button_hovered, (*accent, 0.88))
+            imgui.push_style_color(imgui.Col_.button_active, (*accent, 0.76))
+            imgui.push_style_color(imgui.Col_.text, (*self.theme.on_accent, 1.0))
+        imgui.begin_disabled(not enabled)
+        text = f"{icon}  {label}" if icon and label[0] != "#" else f"{icon}{label}"
+        pressed = imgui.button(text, (width, 0.0))
+        imgui.end_disabled()
+        if primary and enabled:
+            imgui.pop_style_color(4)
+        self.note(label.strip("#"))
+        self.tip(tip)
+        return pressed
+
+    def segments(self, label: str, options: Sequence[str], chosen: int, tips: Sequence[str]) -> int:
+        """Offer a few options side by side; return the one that is chosen."""
+        self.label(label)
+        gap = 2.0 * self.scale
+        width = (imgui.get_content_region_avail().x - gap * (len(options) - 1)) / len(options)
+        for i, option in enumerate(options):
+            if i:
+                imgui.same_line(0.0, gap)
+            if self.button(option, tips[i], width=width, primary=i == chosen):
+                chosen = i
+        return chosen
+
+    def choice(self, label: str, options: Sequence[str], chosen: int, tip: str) -> int:
+        """Offer options in a list that opens; return the one that is chosen."""
+        self.label(label)
+        _, chosen = imgui.combo(f"##{label}", chosen, list(options))
+        self.note(label)
+        self.tip(tip)
+        return chosen
+
+    def number(self, label: str, value: int, tip: str, *, spare: float = 0.0) -> int:
+        """Take a whole number; it counts when Enter is pressed or the field is left."""
+        self.label(label)
+        if spare:
+            imgui.set_next_item_width(-spare)
+        _, typed = imgui.input_int(f"##{label}", value, 0)
+        done = imgui.is_item_deactivated_after_edit()
+        self.note(label)
+        self.tip(tip)
+        return typed if done else value
+
+    def length(self, label: str, value: float, tip: str, unit: str = "mm") -> float:
+        """Take a number with a unit; it counts when Enter is pressed or the field is left."""
+        self.label(label)
+        _, typed = imgui.input_float(f"##{label}", value, 0.0, 0.0, f"%.4g {unit}")
+        done = imgui.is_item_deactivated_after_edit()
+        self.note(label)
+        self.tip(tip)
+        return typed if done else value
+
+    def slider(
+        self, label: str, value: float, low: float, high: float, tip: str, form: str = "%.0f"
+    ) -> float:
+        """Take a number by dragging; Ctrl and a click types it."""
+        self.label(label)
+        _, value = imgui.slider_float(
+            f"##{label}", value, low, high, form, imgui.SliderFlags_.always_clamp
+        )
+        self.note(label)
+        self.tip(tip)
+        return value
+
+    def check(self, label: str, value: bool, tip: str) -> bool:
+        """Take a yes or no."""
+        _, value = imgui.checkbox(label, value)
+        self.note(label)
+        self.tip(tip)
+        return value
+
+    def progress(self, share: float, text: str) -> None:
+        """Draw a bar; a share below 0 is unknown and moves back and forth."""
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, 0.0))
+        imgui.progress_bar(share, (-1.0, 5.0 * self.scale), "")
+        imgui.pop_style_var()
+        self.caption(text)
+
+    def rule(self) -> None:
+        """Draw a line between sections."""
+        imgui.dummy((0.0, 4.0 * self.scale))
+        imgui.separator()
+
+    def note(self, label: str) -> None:
+        """Remember where the last control is."""
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        self.marks[label] = (low.x, low.y, high.x, high.y)

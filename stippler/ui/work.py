@@ -1,0 +1,127 @@
+"""What the editor asks its workers for: frozen inputs, and generators of results.
+
+Each result is whole in itself, so that only the latest has to be looked at. Numba, scipy, shapely
+and Pillow are imported here, in the worker, when the first frame has long been shown.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stippler.errors import StipplerError
+
+if TYPE_CHECKING:
+    from stippler.drawing.drawing import Drawing
+    from stippler.drawing.reference import Reference
+    from stippler.stippling.stipple import Plan, Progress
+
+PREPARE, READ = "prepare", "read"
+_LOOK_S = 0.1  # between two looks at a pause or a stop
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A picture and how tone is taken from it."""
+
+    path: Path
+    tone: str
+    width_mm: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Work:
+    """How far a job has come.
+
+    Attributes
+    ----------
+    stage : str
+        `PREPARE`, `READ`, or a stage of `Progress`.
+    done, total : int
+        Of this stage; a total of 0 is unknown.
+    reference : Reference or None
+        The picture, once it is read.
+    progress : Progress or None
+        The dots, once there are some.
+    """
+
+    stage: str
+    done: int = 0
+    total: int = 0
+    reference: Reference | None = None
+    progress: Progress | None = None
+
+
+def stipple_picture(source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
+    """Stipple a picture from the file, or from its reference where it has been read before."""
+    if reference is None:
+        yield Work(READ)
+        from stippler.files.picture import read_picture
+
+        reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+        yield Work(READ, 1, 1, reference)
+    for n_ready, n_kernels in _prepared_kernels():
+        yield Work(PREPARE, n_ready, n_kernels, reference)
+    from stippler.stippling.stipple import stages
+
+    for progress in stages(reference, plan):
+        yield Work(progress.stage, progress.done, progress.total, reference, progress)
+
+
+def _prepared_kernels() -> Iterator[tuple[int, int]]:
+    """Compile the kernels in a process of its own, if they are not, so that it can be ended."""
+    from stippler.warm import is_warm
+
+    if is_warm():
+        return
+    lines: list[str] = []
+    process = subprocess.Popen(
+        [sys.executable, "-m", "stippler.warm"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    output = process.stdout
+    assert output is not None
+    reader = threading.Thread(target=lambda: lines.extend(output), name="preparing", daemon=True)
+    reader.start()
+    try:
+        while reader.is_alive():
+            yield _ready(lines)
+            reader.join(_LOOK_S)
+        if process.wait():
+            raise StipplerError(
+                f"the kernels could not be compiled ({lines[-1] if lines else 'no reason given'})",
+                do="run python -m stippler.warm to see why",
+            )
+    finally:
+        process.kill()
+        process.wait()
+        reader.join()
+        output.close()
+
+
+def _ready(lines: list[str]) -> tuple[int, int]:
+    """Find how many of how many kernels the last line tells of."""
+    found = re.search(r"(\d+)/(\d+)", lines[-1]) if lines else None
+    return (int(found[1]), int(found[2])) if found else (0, 0)
+
+
+def export_drawing(drawing: Drawing, path: Path, dpi: float) -> Iterator[Path]:
+    """Write a drawing to a file; yield its path when it is there."""
+    from stippler.export import save
+
+    save(drawing, path, dpi=dpi)
+    yield path
+
+
+def frozen(drawing: Drawing) -> Drawing:
+    """Copy what an export reads, so that the drawing may change meanwhile."""
+    return replace(drawing, areas=list(drawing.areas), dots=drawing.dots.copy())
