@@ -20,6 +20,18 @@ class Figure:
     higher_is_better: bool = False
     note: str = ""
 
+    @property
+    def verdict(self) -> str:
+        """Return "stretch", "reach" or "missed"; empty where nothing was promised."""
+        if self.reach is None:
+            return ""
+        if self.stretch is not None and self._meets(self.stretch):
+            return "stretch"
+        return "reach" if self._meets(self.reach) else "missed"
+
+    def _meets(self, promise: float) -> bool:
+        return self.value >= promise if self.higher_is_better else self.value <= promise
+
 
 def median_s(call: Callable[[], object], repeats: int = 5, warm: int = 1) -> float:
     """Return the median wall time of a call, after `warm` uncounted ones."""

@@ -1,0 +1,5 @@
+"""`python -m stippler`."""
+
+from stippler.cli import main
+
+main()
