@@ -23,7 +23,7 @@ from stippler.errors import ParameterError, PictureError
 
 TONES = ("linear", "perceptual")
 
-FORMATS = ("PNG", "JPEG", "MPO", "TIFF", "WEBP", "BMP", "GIF")
+FORMATS = ("PNG", "JPEG", "TIFF", "WEBP", "BMP", "GIF")
 FORMATS_TEXT = "PNG, JPEG, TIFF, WebP, BMP or GIF"
 MAX_PIXELS = 128_000_000
 MAX_FIELD_PIXELS = 16_000_000
