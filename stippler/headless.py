@@ -31,7 +31,7 @@ def open_context() -> moderngl.Context:
     """
     try:
         ctx = moderngl.create_standalone_context(require=330, backend="egl")
-    except Exception as error:  # noqa: BLE001 - the backend raises bare Exception
+    except Exception as error:
         raise DisplayError(
             f"no OpenGL 3.3 ({str(error).strip() or type(error).__name__})",
             do="on Debian or Ubuntu: apt install libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri"
