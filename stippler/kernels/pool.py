@@ -6,6 +6,7 @@ and writes only to what belongs to ``start..stop``; so any number of threads giv
 
 from __future__ import annotations
 
+import itertools
 import os
 import threading
 from collections.abc import Callable
@@ -51,8 +52,13 @@ def _executor() -> ThreadPoolExecutor:
 
 
 def run_ranges(
-    kernel: Callable[..., Any], n: int, *args: Any, grain: int = 2048, chunks: int = 4
-) -> None:
+    kernel: Callable[..., Any],
+    n: int,
+    *args: Any,
+    grain: int = 2048,
+    chunks: int = 4,
+    cancel: Callable[[], bool] | None = None,
+) -> bool:
     """Run a range kernel over ``0..n``, on all cores when it is worth it.
 
     Parameters
@@ -62,24 +68,49 @@ def run_ranges(
     n : int
         Length of the range.
     grain : int
-        Smallest range worth a thread; below it the kernel runs in the calling thread.
+        Smallest range worth a thread; below it the kernel runs in the calling thread. With
+        `cancel`, ranges are near this length, so that it is asked often.
     chunks : int
         Ranges for each thread, so that an uneven load levels out.
+    cancel : callable, optional
+        Asked before each range; once it returns True no further range starts.
+
+    Returns
+    -------
+    bool
+        False if `cancel` stopped the run before its end.
     """
     threads = n_threads()
-    n_ranges = min(threads * chunks, max(n // grain, 1))
-    if threads == 1 or n_ranges == 1:
+    most = max(n // grain, 1)
+    n_ranges = most if cancel is not None else min(threads * chunks, most)
+    if n_ranges == 1 or (threads == 1 and cancel is None):
+        if cancel is not None and cancel():
+            return False
         kernel(0, n, *args)
-        return
-    bounds = [n * i // n_ranges for i in range(n_ranges + 1)]
+        return True
+    turn = itertools.count()  # `next` on it is atomic
+    stopped = threading.Event()
+
+    def work() -> None:
+        while (k := next(turn)) < n_ranges and not stopped.is_set():
+            if cancel is not None and cancel():
+                stopped.set()
+                return
+            kernel(n * k // n_ranges, n * (k + 1) // n_ranges, *args)
+
+    if threads == 1:
+        work()
+        return not stopped.is_set()
     executor = _executor()
-    futures: list[Future[Any]] = [
-        executor.submit(kernel, a, b, *args) for a, b in zip(bounds[1:-1], bounds[2:], strict=True)
-    ]
+    futures: list[Future[None]] = [executor.submit(work) for _ in range(min(threads, n_ranges) - 1)]
     try:
-        kernel(bounds[0], bounds[1], *args)
+        work()
+    except BaseException:
+        stopped.set()
+        raise
     finally:
         for future in futures:
             future.exception()  # wait for all before anyone touches the arrays again
     for future in futures:
         future.result()
+    return not stopped.is_set()

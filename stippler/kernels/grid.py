@@ -1,0 +1,126 @@
+"""Uniform grids of dots and of border edges, one grid for each compartment.
+
+All compartments share flat arrays. Row c of `grid_real` holds ``x0, y0, h, 1/h`` and the
+compartment's box ``xmin, ymin, xmax, ymax``; row c of `grid_int` holds ``nx, ny, first cell, kind``
+with kind 0 for a rectangle, whose box is its exact border, and 1 for a polygon.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.jit import inline, kernel
+
+F8 = NDArray[np.float64]
+I4 = NDArray[np.int32]
+
+
+@inline
+def column_of(v: float, v0: float, inverse: float, n: int) -> int:
+    """Return the grid column (or row) of a coordinate, clamped to the grid."""
+    return min(max(int((v - v0) * inverse), 0), n - 1)
+
+
+@kernel
+def find_grid_cells(
+    start: int, stop: int, xy: F8, compartment_of_dot: I4, grid_real: F8, grid_int: I4, out: I4
+) -> None:
+    """Write the grid cell of each dot."""
+    for i in range(start, stop):
+        c = compartment_of_dot[i]
+        ix = column_of(xy[i, 0], grid_real[c, 0], grid_real[c, 3], grid_int[c, 0])
+        iy = column_of(xy[i, 1], grid_real[c, 1], grid_real[c, 3], grid_int[c, 1])
+        out[i] = grid_int[c, 2] + iy * grid_int[c, 0] + ix
+
+
+@kernel
+def sort_by_grid_cell(cell_of_dot: I4, cell_start: I4, order: I4) -> None:
+    """Sort dots by grid cell, stable; `cell_start` gets the offset of each cell and the end."""
+    cell_start[:] = 0
+    for i in range(len(cell_of_dot)):
+        cell_start[cell_of_dot[i] + 1] += 1
+    for k in range(1, len(cell_start)):
+        cell_start[k] += cell_start[k - 1]
+    for i in range(len(cell_of_dot)):
+        k = cell_of_dot[i]
+        order[cell_start[k]] = i
+        cell_start[k] += 1
+    for k in range(len(cell_start) - 1, 0, -1):
+        cell_start[k] = cell_start[k - 1]
+    cell_start[0] = 0
+
+
+@inline
+def _edge_misses_cell(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> bool:
+    """Whether an edge surely stays off the unit cell at (cx, cy); coordinates in cells."""
+    slack = 1e-6
+    nx, ny = ay - by, bx - ax
+    reach = (abs(nx) + abs(ny)) * (0.5 + slack)
+    return abs(nx * (cx + 0.5 - ax) + ny * (cy + 0.5 - ay)) > reach
+
+
+@kernel
+def spread_edges(
+    edges: F8,
+    compartment_of_edge: I4,
+    grid_real: F8,
+    grid_int: I4,
+    cell_start: I4,
+    edge_of_slot: I4,
+    count_only: bool,
+) -> None:
+    """List for each grid cell the border edges that may touch it.
+
+    Called twice: first counts into ``cell_start[k + 1]``, then, after a running sum, fills
+    `edge_of_slot` and moves each ``cell_start[k]`` on to the end of its list.
+    """
+    for e in range(len(edges)):
+        c = compartment_of_edge[e]
+        inv, nx, ny = grid_real[c, 3], grid_int[c, 0], grid_int[c, 1]
+        ax, ay = (edges[e, 0] - grid_real[c, 0]) * inv, (edges[e, 1] - grid_real[c, 1]) * inv
+        bx, by = (edges[e, 2] - grid_real[c, 0]) * inv, (edges[e, 3] - grid_real[c, 1]) * inv
+        slack = 1e-6
+        i0 = min(max(int(min(ax, bx) - slack), 0), nx - 1)
+        i1 = min(max(int(max(ax, bx) + slack), 0), nx - 1)
+        j0 = min(max(int(min(ay, by) - slack), 0), ny - 1)
+        j1 = min(max(int(max(ay, by) + slack), 0), ny - 1)
+        for j in range(j0, j1 + 1):
+            for i in range(i0, i1 + 1):
+                if _edge_misses_cell(ax, ay, bx, by, i, j):
+                    continue
+                k = grid_int[c, 2] + j * nx + i
+                if count_only:
+                    cell_start[k + 1] += 1
+                else:
+                    edge_of_slot[cell_start[k]] = e
+                    cell_start[k] += 1
+
+
+@kernel
+def measure_clearance(grid_int: I4, cell_start: I4, clear: I4) -> None:
+    """Write for each cell how many rings around it, itself included, hold no border edge.
+
+    0 means an edge may touch the cell itself; k means that no edge comes nearer to any point of
+    the cell than k - 1 cell sides.
+    """
+    far = 1 << 20
+    for c in range(len(grid_int)):
+        nx, ny, first = grid_int[c, 0], grid_int[c, 1], grid_int[c, 2]
+        for k in range(first, first + nx * ny):
+            clear[k] = 0 if cell_start[k + 1] > cell_start[k] else far
+        for forward in (True, False):
+            for a in range(ny):
+                j = a if forward else ny - 1 - a
+                back = -1 if forward else 1
+                for b in range(nx):
+                    i = b if forward else nx - 1 - b
+                    k = first + j * nx + i
+                    best = clear[k]
+                    if 0 <= i + back < nx:
+                        best = min(best, clear[k + back] + 1)
+                    if 0 <= j + back < ny:
+                        for s in range(-1, 2):
+                            if 0 <= i + s < nx:
+                                best = min(best, clear[k + back * nx + s] + 1)
+                    clear[k] = best

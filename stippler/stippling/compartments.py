@@ -1,0 +1,196 @@
+"""The polygons that bound the movement of dots, as flat arrays for the kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.polygon import orient
+
+from stippler.errors import GeometryError
+
+Shape = Polygon | MultiPolygon | NDArray[np.float64]
+
+RECTANGLE, POLYGON = 0, 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Compartments:
+    """Compartments with their borders as directed edges, inside on the left (y up).
+
+    Attributes
+    ----------
+    polygons : list of shapely Polygon
+    shape_of : (c,) int32
+        Which of the shapes given a compartment is part of.
+    box : (c, 4) float64
+        xmin, ymin, xmax, ymax.
+    area : (c,) float64
+    kind : (c,) int32
+        `RECTANGLE`, whose box is its border and which has no edges, or `POLYGON`.
+    edges : (e, 4) float64
+    next_edge, compartment_of_edge : (e,) int32
+    """
+
+    polygons: list[Polygon]
+    shape_of: NDArray[np.int32]
+    box: NDArray[np.float64]
+    area: NDArray[np.float64]
+    kind: NDArray[np.int32]
+    edges: NDArray[np.float64]
+    next_edge: NDArray[np.int32]
+    compartment_of_edge: NDArray[np.int32]
+
+    def __len__(self) -> int:
+        return len(self.polygons)
+
+    @classmethod
+    def of(cls, shapes: Shape | ArrayLike | Sequence[Shape]) -> Compartments:
+        """Take apart one shape or a list of shapes; each polygon is one compartment.
+
+        Raises
+        ------
+        GeometryError
+            If a shape is empty, invalid or not finite; it names the compartment.
+        """
+        polygons: list[Polygon] = []
+        shape_of: list[int] = []
+        for i, shape in enumerate(_as_list(shapes)):
+            parts = _polygons_of(shape, f"compartment {i}")
+            polygons += parts
+            shape_of += [i] * len(parts)
+        if not polygons:
+            raise GeometryError("there is no compartment", "polygon", "give at least one polygon")
+        polygons = [orient(p) for p in polygons]
+        kind = np.array([POLYGON - _is_rectangle(p) for p in polygons], np.int32)
+        edges, following, owner = _edges_of(polygons, kind)
+        return cls(
+            polygons=polygons,
+            shape_of=np.array(shape_of, np.int32),
+            box=np.array(shapely.bounds(polygons)).reshape(-1, 4),
+            area=np.array(shapely.area(polygons)).reshape(-1),
+            kind=kind,
+            edges=edges,
+            next_edge=following,
+            compartment_of_edge=owner,
+        )
+
+    def find(
+        self, points: NDArray[np.float64], shape_of_dot: NDArray[np.int32] | None
+    ) -> NDArray[np.int32]:
+        """Return the compartment of each point; its border counts as inside.
+
+        Raises
+        ------
+        GeometryError
+            If a point lies outside all compartments, or outside the shape it is said to be in.
+        """
+        found = np.full(len(points), -1, np.int32)
+        if len(self) == 1 and self.kind[0] == RECTANGLE:
+            x0, y0, x1, y1 = self.box[0]
+            x, y = points[:, 0], points[:, 1]
+            found[(x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)] = 0
+        elif len(self) == 1:
+            shapely.prepare(self.polygons[0])
+            found[shapely.intersects_xy(self.polygons[0], points[:, 0], points[:, 1])] = 0
+        elif len(points):
+            tree = shapely.STRtree(shapely.points(points))
+            which, dot = tree.query(self.polygons, predicate="intersects")
+            if shape_of_dot is not None:
+                fits = self.shape_of[which] == shape_of_dot[dot]
+                which, dot = which[fits], dot[fits]
+            backwards = np.argsort(which, kind="stable")[::-1]  # the lowest is written last
+            found[dot[backwards]] = which[backwards]
+        outside = np.flatnonzero(found < 0)
+        if len(outside):
+            self._refuse(points, outside, shape_of_dot)
+        return found
+
+    def _refuse(
+        self,
+        points: NDArray[np.float64],
+        outside: NDArray[np.intp],
+        shape_of_dot: NDArray[np.int32] | None,
+    ) -> None:
+        i = int(outside[0])
+        where = "every compartment"
+        if shape_of_dot is not None:
+            where = f"compartment {shape_of_dot[i]}"
+        elif int(self.shape_of[-1]) == 0:
+            where = "compartment 0"
+        raise GeometryError(
+            f"dot {i} at ({points[i, 0]:g}, {points[i, 1]:g}) lies outside"
+            + (f", as do {len(outside) - 1} more" if len(outside) > 1 else ""),
+            where,
+            "move or drop the dots outside",
+        )
+
+
+def _as_list(shapes: object) -> Sequence[object]:
+    if isinstance(shapes, Polygon | MultiPolygon | np.ndarray):
+        return [shapes]
+    if isinstance(shapes, list | tuple):
+        if shapes and not isinstance(shapes[0], Polygon | MultiPolygon) and np.ndim(shapes) == 2:
+            return [np.asarray(shapes, np.float64)]
+        return shapes
+    raise GeometryError(f"a {type(shapes).__name__} is no polygon", "polygon")
+
+
+def _polygons_of(shape: object, name: str) -> list[Polygon]:
+    if isinstance(shape, Polygon | MultiPolygon):
+        geometry = shape
+    else:
+        ring = np.asarray(shape, np.float64)
+        if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3:
+            raise GeometryError("a polygon needs at least three points (m, 2)", name)
+        if not np.isfinite(ring).all():
+            raise GeometryError("has a corner that is not finite", name)
+        geometry = Polygon(ring)
+    if geometry.is_empty:
+        raise GeometryError("is empty", name, "give a polygon with an area")
+    if not np.isfinite(shapely.get_coordinates(geometry)).all():
+        raise GeometryError("has a corner that is not finite", name)
+    if not geometry.is_valid:
+        reason = shapely.is_valid_reason(geometry)
+        raise GeometryError(f"is not valid ({reason})", name, "repair it with shapely.make_valid")
+    if not geometry.area > 0.0:
+        raise GeometryError("has no area", name)
+    return list(geometry.geoms) if isinstance(geometry, MultiPolygon) else [geometry]
+
+
+def _is_rectangle(polygon: Polygon) -> bool:
+    if len(polygon.interiors):
+        return False
+    xy = shapely.get_coordinates(polygon)
+    x0, y0, x1, y1 = polygon.bounds
+    on = [xy[:, 0] == x0, xy[:, 0] == x1, xy[:, 1] == y0, xy[:, 1] == y1]
+    flat = np.zeros(len(xy) - 1, np.bool_)
+    for side in on:
+        flat |= side[:-1] & side[1:]
+    return bool(flat.all())
+
+
+def _edges_of(
+    polygons: list[Polygon], kind: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    edges, following, owner, n = [np.empty((0, 4))], [np.empty(0, np.int32)], [], 0
+    for c, polygon in enumerate(polygons):
+        if kind[c] == RECTANGLE:
+            continue
+        for ring in (polygon.exterior, *polygon.interiors):
+            xy = shapely.get_coordinates(ring)
+            xy = xy[np.r_[True, (np.diff(xy, axis=0) != 0.0).any(axis=1)]]
+            m = len(xy) - 1
+            edges.append(np.hstack([xy[:-1], xy[1:]]))
+            following.append(n + (np.arange(1, m + 1, dtype=np.int32) % m))
+            owner += [c] * m
+            n += m
+    return (
+        np.ascontiguousarray(np.concatenate(edges)),
+        np.concatenate(following).astype(np.int32),
+        np.array(owner, np.int32),
+    )
