@@ -25,7 +25,8 @@ app = typer.Typer(
     add_completion=False,
     no_args_is_help=False,
     rich_markup_mode=None,
-    help="Stipple drawings: tens of thousands of ink dots, from a picture or by hand.",
+    help="Stipple drawings: tens of thousands of ink dots, from a picture.",
+    epilog="stippler photo.jpg opens the editor; stippler alone opens it on a sample.",
 )
 
 Dots = Annotated[
@@ -194,7 +195,7 @@ def main() -> None:
     if not args or args[0] not in (*COMMANDS, "--help", "--version"):
         args = ["edit", *args]  # `stippler photo.jpg`
     try:
-        status = app(args, standalone_mode=False)
+        status = app(args, prog_name="stippler", standalone_mode=False)
     except TyperException as error:
         status = _fail(error.format_message(), error.exit_code, f"see stippler {args[0]} --help")
     except ParameterError as error:

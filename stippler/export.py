@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from stippler.drawing.drawing import Drawing
 from stippler.errors import OutputError, ParameterError
 from stippler.files.output import check_writable, replacing
+from stippler.units import px_per_mm
 
-ENDINGS = (".svg", ".png", ".csv")
 DEFAULT_DPI = 300.0
 
 
@@ -50,16 +51,34 @@ def save(drawing: Drawing, path: str | Path, *, dpi: float = DEFAULT_DPI) -> Non
         If a PNG is asked for and there is no OpenGL.
     """
     check_output(path, dpi)
-    ending = check_ending(path)
-    if ending == ".png":
-        _save_png(drawing, path, dpi)
-        return
+    chunks = _WRITERS[check_ending(path)](drawing, dpi)
     with replacing(path) as stream:
-        if ending == ".svg":
-            from stippler.files.svg import svg_chunks
+        stream.writelines(chunks)
 
-            stream.writelines(svg_chunks(drawing))
-        else:
-            from stippler.files.table import csv_chunks
 
-            stream.writelines(csv_chunks(drawing.dots))
+def _svg(drawing: Drawing, dpi: float) -> Iterator[bytes]:
+    from stippler.files.svg import svg_chunks
+
+    return svg_chunks(drawing)
+
+
+def _csv(drawing: Drawing, dpi: float) -> Iterator[bytes]:
+    from stippler.files.table import csv_chunks
+
+    return csv_chunks(drawing.dots)
+
+
+def _png(drawing: Drawing, dpi: float) -> Iterator[bytes]:
+    from stippler.files.png import png_chunks
+    from stippler.headless import image_size, render_strips
+
+    scale = px_per_mm(dpi)
+    return png_chunks(render_strips(drawing, px_per_mm=scale), image_size(drawing, scale), dpi)
+
+
+_WRITERS: dict[str, Callable[[Drawing, float], Iterator[bytes]]] = {
+    ".svg": _svg,
+    ".png": _png,
+    ".csv": _csv,
+}
+ENDINGS = tuple(_WRITERS)
