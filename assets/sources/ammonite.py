@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
-
 from sources.relief import Field, encode, fractal, jit, light, noise, reduce, smoothstep
 
 TAU = 2 * np.pi
@@ -49,8 +49,8 @@ def _ridge(phase: float, fork: float) -> float:
 
 
 @jit
-def _whorl(r: float, theta: float) -> tuple[float, float, float]:
-    """Return height, rib relief and place on the flank at one turn of the spiral.
+def _whorl(r: float, theta: float) -> tuple[float, float]:
+    """Return height and rib relief at one turn of the spiral.
 
     The height is -1 where this whorl does not reach.
     """
@@ -61,7 +61,7 @@ def _whorl(r: float, theta: float) -> tuple[float, float, float]:
     seam = INNER * venter
     u = (2 * r - venter - seam) / (venter - seam)
     if u >= 1.05 or u <= -1.0:
-        return -1.0, 0.0, u
+        return -1.0, 0.0
     fork = smoothstep(FORK - 0.10, FORK + 0.34, u)
     lean = phase - RIBS * TAU * _sweep(u)
     rib = _ridge(lean, fork)
@@ -69,7 +69,7 @@ def _whorl(r: float, theta: float) -> tuple[float, float, float]:
     u -= 0.045 * grown * (rib - 0.4) * smoothstep(0.45, 1.0, u)
     behind = END + TAU * (_sweep(u) - _sweep(0.0)) - 0.19 * max((u - 0.1) / 0.9, 0.0) ** 2.5 - theta
     if behind <= 0.0 or u >= 1.0:
-        return -1.0, 0.0, u
+        return -1.0, 0.0
     size = 0.5 * (venter - seam)
     # Section: steep umbilical wall, flat flank, round venter; widest at u = -0.35.
     if u > -0.35:
@@ -88,25 +88,25 @@ def _whorl(r: float, theta: float) -> tuple[float, float, float]:
     relief -= 0.9 * np.exp(-(((behind - 0.115) / 0.035) ** 2)) * smoothstep(-0.9, -0.3, u)
     relief += 0.6 * np.exp(-(((behind - 0.035) / 0.03) ** 2)) * smoothstep(-0.9, -0.3, u)
     lip = min(behind / 0.022, 1.0)
-    height = THICKNESS * size * (body + 0.125 * relief * body ** 0.5)
-    return height * np.sqrt(1 - (1 - lip) ** 2), relief, u
+    height = THICKNESS * size * (body + 0.125 * relief * body**0.5)
+    return height * np.sqrt(1 - (1 - lip) ** 2), relief
 
 
 @jit
-def _shell(x: float, y: float) -> tuple[float, float, float]:
-    """Return height above the median plane (-1 beside the shell), rib relief and place."""
+def _shell(x: float, y: float) -> tuple[float, float]:
+    """Return height above the median plane (-1 beside the shell) and rib relief."""
     r = np.sqrt(x * x + y * y)
     phi = np.arctan2(y, x)
-    best, relief, place = -1.0, 0.0, 0.0
+    best, relief = -1.0, 0.0
     for turn in range(-8, 2):
         theta = phi + TAU * turn
         reach = EXPANSION ** ((theta - END) / TAU)
         if r > 1.02 * reach or r < 0.97 * INNER * reach:
             continue
-        height, rib, u = _whorl(r, theta)
+        height, rib = _whorl(r, theta)
         if height > best:
-            best, relief, place = height, rib, u
-    return best, relief, place
+            best, relief = height, rib
+    return best, relief
 
 
 @jit
@@ -115,7 +115,7 @@ def _build(z: Field, tint: Field, scale: float, cx: float, cy: float, ground: fl
     for j in range(h):
         for i in range(w):
             x, y = (i + 0.5 - cx) / scale, (cy - j - 0.5) / scale
-            height, relief, u = _shell(x, y)
+            height, relief = _shell(x, y)
             if height < 0.0:
                 z[j, i] = -ground * scale
                 tint[j, i] = -1.0
@@ -123,8 +123,8 @@ def _build(z: Field, tint: Field, scale: float, cx: float, cy: float, ground: fl
             weather = fractal(11 * x + 5 * y, 11 * y - 5 * x, 21, 6)
             warp = 0.5 * fractal(16 * x - 9 * y, 16 * y + 9 * x, 51, 3)
             pits = fractal(61 * x + 33 * y + warp, 61 * y - 33 * x - warp, 33, 2)
-            pits = max(pits - 1.0, 0.0)
-            height += 0.0013 * weather - 0.010 * pits
+            pits = max(pits - 1.06, 0.0)
+            height += 0.0013 * weather - 0.012 * pits
             z[j, i] = height * scale
             patina = fractal(2.1 * x + 0.8 * y + 4.0 + 0.3 * warp, 2.1 * y - 0.8 * x, 41, 6)
             tone = 0.62 + 0.10 * relief + 0.12 * patina + 0.03 * weather - 0.5 * pits
@@ -141,16 +141,23 @@ def draw(width: int = 1800, height: int = 1500, oversample: int = 2) -> Field:
     """
     w, h = width * oversample, height * oversample
     scale = 0.505 * h
-    cx, cy = 0.5 * w - 0.19 * scale, 0.5 * h - 0.10 * scale
+    cx, cy = 0.5 * w - 0.215 * scale, 0.5 * h - 0.165 * scale
     z, tint = np.empty((h, w), np.float32), np.empty((h, w), np.float32)
     ground = 0.5 * THICKNESS * (1 - INNER) * 0.97
     _build(z, tint, scale, cx, cy, ground)
     sky, direct = light(z, AZIMUTH, ELEVATION, np.radians(7.5))
     shell = tint >= 0
-    floor = (0.70 * direct / np.sin(ELEVATION) + 0.30 * sky).astype(np.float32)
+    floor = (0.77 * direct / np.sin(ELEVATION) + 0.23 * sky).astype(np.float32)
+    floor = np.where(shell, floor, _blur(floor, ~shell, 0.006 * scale))
     on_shell = _shade_shell(z, tint, sky, direct, floor, shell, scale)
     picture = np.where(shell, on_shell, _shade_ground(floor))
     return reduce(picture.astype(np.float32), oversample)
+
+
+def _blur(field: Field, inside: NDArray[np.bool_], sigma: float) -> Field:
+    """Blur without crossing the border of a mask."""
+    weight = gaussian_filter(inside.astype(np.float32), sigma)
+    return gaussian_filter(np.where(inside, field, 0), sigma) / np.maximum(weight, 1e-6)
 
 
 def _shade_ground(floor: Field) -> Field:
@@ -169,9 +176,15 @@ def _shade_shell(
     # Dust settles in hollows, ridges are worn pale.
     hollow = np.clip((gaussian_filter(z, 0.008 * scale) - z) / (0.006 * scale), -1.0, 1.0)
     tint = np.clip(tint * (1 - 0.35 * np.where(shell, hollow, 0.0)), 0.1, 0.97)
-    linear = tint * (1.12 * direct + 0.07 * sky + 0.18 * bounce)
-    linear += 0.14 * _gloss(gx, gy, nz) * direct
-    return _curve(encode(linear))
+    linear = tint * (1.34 * direct + 0.07 * sky + 0.18 * bounce)
+    linear += 0.16 * _gloss(gx, gy, nz) * direct
+    return _curve(encode(_shoulder(linear)))
+
+
+def _shoulder(linear: Field) -> Field:
+    """Bend lights above 0.6 towards 1 without clipping."""
+    over = np.maximum(linear - 0.6, 0.0)
+    return np.minimum(linear, 0.6) + 0.4 * (1 - np.exp(-over / 0.4))
 
 
 def _curve(value: Field) -> Field:

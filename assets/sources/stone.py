@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
-
 from sources.relief import (
     Field,
     encode,
@@ -38,7 +37,11 @@ def _cells(x: float, y: float, seed: int) -> tuple[float, float, float]:
 @jit
 def _lamina(s: float, seed: int) -> float:
     """Hard and soft layers along the coordinate across the bedding."""
-    return 0.55 * noise(s, 0.3, seed) + 0.3 * noise(2.7 * s, 5.1, seed) + 0.2 * noise(7.1 * s, 9.7, seed)
+    return (
+        0.55 * noise(s, 0.3, seed)
+        + 0.3 * noise(2.7 * s, 5.1, seed)
+        + 0.2 * noise(7.1 * s, 9.7, seed)
+    )
 
 
 @jit

@@ -10,7 +10,7 @@ Field = NDArray[np.float32]
 
 WIDTH, HEIGHT = 1800, 1500
 LEFT, RIGHT = 92, 1708
-"""Inner edges of every row; 1616 px hold 11, 16 and 101 steps without rounding trouble."""
+"""Inner edges of every row."""
 FRAME = 3
 
 
