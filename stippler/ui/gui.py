@@ -32,7 +32,7 @@ class Gui:
         # An exception inside a panel leaves windows open; ImGui closes them and goes on.
         io.config_error_recovery_enable_assert = False
         io.config_error_recovery_enable_tooltip = False
-        io.config_error_recovery_enable_debug_log = False
+        io.config_error_recovery_enable_debug_log = True  # ImGui insists on one of the three
         self.fonts = theme.load_fonts()
         self.dress(look)
         imgui.backends.glfw_init_for_opengl(window.address, True)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 INFO, WARNING, ERROR = "info", "warning", "error"
 _SHOWN_S = {INFO: 6.0, WARNING: 15.0, ERROR: 30.0}
 _KEPT = 200
+_LONGEST = 300  # characters
 
 _log = logging.getLogger("stippler")
 
@@ -36,14 +37,16 @@ class Messages:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._seen = False
+        self._logged: set[str] = set()
         self.log: deque[Message] = deque(maxlen=_KEPT)
 
     def say(self, text: str, level: str = INFO, error: BaseException | None = None) -> None:
         """Add a line; one that repeats the last only shows it for longer."""
-        line = Message(level, " ".join(text.split()), self._clock())
+        line = Message(level, _shortened(text), self._clock())
         if self.log and (self.log[-1].level, self.log[-1].text) == (level, line.text):
             self.log.pop()
-        elif level == ERROR:
+        elif level == ERROR and line.text not in self._logged:
+            self._logged.add(line.text)
             _log.error("%s", line.text, exc_info=error)
         self.log.append(line)
         self._seen = False
@@ -66,3 +69,8 @@ class Messages:
             return 0.0
         last = self.log[-1]
         return max(last.at_s + _SHOWN_S[last.level] - self._clock(), 0.0)
+
+
+def _shortened(text: str) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"

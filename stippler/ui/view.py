@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from stippler.camera import Camera, Paper, Point, Size
 
@@ -12,6 +12,17 @@ MAX_PX_PER_MM = 2_000.0
 SMALLEST_OF_FIT = 0.1  # zooming out ends where the page is a tenth of the fitted one
 _SETTLE_S = 0.06  # in this time a smooth zoom covers 63 % of what is left
 _CLOSE_ENOUGH = 0.002  # of the logarithm of the scale
+
+
+@dataclass(frozen=True, slots=True)
+class _Blank:
+    """What is looked at before there is a page."""
+
+    width_mm: float = 148.0
+    height_mm: float = 111.0
+
+
+BLANK = _Blank()
 
 
 class View:

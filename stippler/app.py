@@ -1,0 +1,86 @@
+"""The editor, put together: window, workers, session and the frame loop."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stippler.jobs.worker import Worker
+from stippler.ui.editor import Editor
+from stippler.ui.session import Session
+from stippler.ui.window import Window, wake
+from stippler.ui.work import Work
+
+if TYPE_CHECKING:
+    from stippler.stippling.stipple import Plan
+
+_SIZE = (1280, 800)
+_FAREWELL_S = 2.0  # for a worker that decodes a large picture; it is let go of after that
+
+
+class App:
+    """The editor's parts.
+
+    Parameters
+    ----------
+    plan : Plan
+        What to make of the first picture.
+    tone : {"linear", "perceptual"}
+    width_mm : float
+        Of the page.
+    offscreen : bool
+        Without a display, for tests and screenshots.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        *,
+        tone: str,
+        width_mm: float,
+        size: tuple[int, int] = _SIZE,
+        offscreen: bool = False,
+    ) -> None:
+        self.window = Window("Stippler", size, offscreen=offscreen)
+        self.worker: Worker[Work] = Worker(wake)
+        self.exporter: Worker[Path] = Worker(wake)
+        self.session = Session(self.worker, self.exporter, plan, tone=tone, width_mm=width_mm)
+        native = False if offscreen else None
+        self.editor = Editor(self.window, self.session, native_dialogs=native)
+
+    def step(self, timeout_s: float | None = None) -> bool:
+        """Wait for something to do, at most `timeout_s`; draw a frame if there is one to draw."""
+        sleep_s = self.editor.sleep_s()
+        self.window.wait(sleep_s if timeout_s is None else min(sleep_s, timeout_s))
+        return self.editor.step()
+
+    def run(self) -> None:
+        """Go on until the window is closed."""
+        while not self.window.wants_to_close:
+            self.step()
+
+    def close(self) -> None:
+        """End the workers, then the window; a file that is being written is finished first."""
+        self.worker.close(_FAREWELL_S)
+        self.exporter.close()
+        self.editor.close()
+        self.window.close()
+
+
+def edit(path: Path | None, plan: Plan, *, tone: str, width_mm: float) -> int:
+    """Open the editor on a picture; return the exit code when its window is closed.
+
+    Raises
+    ------
+    DisplayError
+        If there is no display, or no OpenGL 3.3.
+    """
+    app = App(plan, tone=tone, width_mm=width_mm)
+    try:
+        app.step()  # a first frame before the worker takes its share of the processor
+        if path is not None:
+            app.session.open(path)
+        app.run()
+    finally:
+        app.close()
+    return 0

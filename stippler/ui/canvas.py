@@ -1,0 +1,102 @@
+"""The page as a picture that is drawn only when it would look different.
+
+Panels and pointers change far more often than the page: their frames show the picture that is
+there, at the cost of a rectangle.
+"""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+from imgui_bundle import imgui
+
+from stippler.camera import Camera, Size
+from stippler.render.renderer import Renderer
+from stippler.ui.look import Look
+from stippler.ui.session import Session
+from stippler.ui.widgets import Rect
+
+
+class Canvas:
+    """Draws a session's page into a texture of the canvas's size.
+
+    Attributes
+    ----------
+    n_drawn : int
+        How often the page has been drawn.
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._renderer = Renderer(ctx)
+        self._texture: moderngl.Texture | None = None
+        self._target: moderngl.Framebuffer | None = None
+        self._drawn: object = None
+        self._uploaded = -1
+        self.n_drawn = 0
+
+    def show(self, area: Rect, size_px: Size) -> None:
+        """Put the picture behind all panels, at ImGui's coordinates."""
+        texture = self._sized(size_px)
+        imgui.get_background_draw_list().add_image(
+            imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
+        )
+
+    def upload(self, session: Session) -> None:
+        """Bring what has changed since the last call to the GPU."""
+        if session.revision == self._uploaded:
+            return
+        self._uploaded = session.revision
+        drawing = session.drawing
+        if drawing is not None:
+            self._renderer.set_page(drawing.page.width_mm, drawing.page.height_mm)
+        if session.position_mm is not None and session.radius_mm is not None:
+            self._renderer.set_positions(session.position_mm, session.radius_mm)
+        else:
+            self._renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
+
+    def draw(self, session: Session, camera: Camera, look: Look) -> bool:
+        """Draw the page if it would look different from the last time; return whether it did."""
+        if self._target is None or self._texture is None:
+            return False
+        key = (camera, self._texture.size, session.revision, look.theme, look.reference_opacity)
+        if key == self._drawn:
+            return False
+        self.upload(session)
+        self._renderer.set_reference(
+            session.reference if look.reference_shown else None, look.reference_opacity
+        )
+        if session.drawing is None:
+            self._target.use()
+            self._target.clear(*look.theme.desk, 1.0)
+        else:
+            self._renderer.draw(
+                camera,
+                self._texture.size,
+                self._target,
+                paper=look.theme.paper,
+                desk=look.theme.desk,
+                ink=look.theme.ink,
+            )
+        self._drawn = key
+        self.n_drawn += 1
+        return True
+
+    def _sized(self, size_px: Size) -> moderngl.Texture:
+        if self._texture is None or self._texture.size != size_px:
+            self._free()
+            self._texture = self._ctx.texture(size_px, 4)
+            self._texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            self._target = self._ctx.framebuffer([self._texture])
+            self._drawn = None
+        return self._texture
+
+    def _free(self) -> None:
+        for one in (self._target, self._texture):
+            if one is not None:
+                one.release()
+
+    def close(self) -> None:
+        """Free every GL object."""
+        self._free()
+        self._renderer.release()

@@ -1,0 +1,228 @@
+"""Asking for a file: by the system's dialog where there is one, else by a window of our own."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from imgui_bundle import imgui
+from imgui_bundle import portable_file_dialogs as native
+
+from stippler.ui.widgets import Widgets
+
+PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".gif")
+_PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # what the native dialogs need on Linux
+_LISTED = 400
+_WIDTH, _LIST_HEIGHT = 520.0, 240.0
+
+
+def has_native_dialogs() -> bool:
+    """Return whether the system has a file dialog; without one, native dialogs say "cancelled"."""
+    return not sys.platform.startswith("linux") or any(shutil.which(one) for one in _PROGRAMS)
+
+
+class _Asked(Protocol):
+    def ready(self, timeout: int = ...) -> bool: ...
+
+
+@dataclass(slots=True)
+class _Native:
+    """A system dialog that is open."""
+
+    asked: native.open_file | native.save_file
+    take: Callable[[Path], None]
+
+    def poll(self) -> bool:
+        """Return whether it has been answered; pass the answer on."""
+        if not self.asked.ready(0):
+            return False
+        result = self.asked.result()
+        answer = result if isinstance(result, str) else "".join(result[:1])
+        if answer:
+            self.take(Path(answer))
+        return True
+
+
+@dataclass(slots=True)
+class _Own:
+    """Our own dialog: a path, and the files beside it."""
+
+    title: str
+    verb: str
+    text: str
+    endings: tuple[str, ...]
+    take: Callable[[Path], None]
+    fresh: bool = True
+    listed: tuple[Path, tuple[Path, ...]] | None = None
+
+
+class Dialogs:
+    """The dialog that is open, if any; `draw` is called in every frame.
+
+    Parameters
+    ----------
+    use_native : bool
+        Whether to ask by the system's dialogs.
+    """
+
+    def __init__(self, *, use_native: bool) -> None:
+        self._use_native = use_native
+        self._native: _Native | None = None
+        self._own: _Own | None = None
+        self._confirm: tuple[Path, Callable[[Path], None]] | None = None
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a system dialog is open, which wakes nobody when it is answered."""
+        return self._native is not None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a dialog of any kind is open."""
+        return bool(self._native or self._own or self._confirm)
+
+    def ask_picture(self, folder: Path, take: Callable[[Path], None]) -> None:
+        """Ask for a picture to open."""
+        if self.is_open:
+            return
+        if self._use_native:
+            patterns = " ".join(f"*{ending}" for ending in PICTURES)
+            asked = native.open_file("Open a picture", str(folder), ["Pictures", patterns])
+            self._native = _Native(asked, take)
+        else:
+            self._own = _Own("Open a picture", "Open", f"{folder}/", PICTURES, take)
+
+    def ask_export(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
+        """Ask where to write the drawing; a file that is there is not replaced unasked."""
+        if self.is_open:
+            return
+        if self._use_native:
+            patterns = " ".join(f"*{ending}" for ending in endings)
+            asked = native.save_file(
+                "Export the drawing", str(path), ["Drawings", patterns], native.opt.force_overwrite
+            )
+            self._native = _Native(asked, lambda chosen: self._checked(chosen, take))
+        else:
+            self._own = _Own(
+                "Export the drawing",
+                "Export",
+                str(path),
+                endings,
+                lambda chosen: self._checked(chosen, take),
+            )
+
+    def draw(self, widgets: Widgets) -> None:
+        """Draw the dialog that is open."""
+        if self._native is not None and self._native.poll():
+            self._native = None
+        if self._own is not None:
+            self._draw_own(widgets, self._own)
+        if self._confirm is not None:
+            self._draw_confirm(widgets, *self._confirm)
+
+    def _checked(self, path: Path, take: Callable[[Path], None]) -> None:
+        if path.exists():
+            self._confirm = (path, take)
+        else:
+            take(path)
+
+    # --- our own ----------------------------------------------------------------------------
+
+    def _draw_own(self, widgets: Widgets, own: _Own) -> None:
+        imgui.open_popup(own.title)
+        _center(_WIDTH * widgets.scale)
+        if not imgui.begin_popup_modal(own.title, None, imgui.WindowFlags_.no_resize)[0]:
+            return
+        if own.fresh:
+            imgui.set_keyboard_focus_here()
+            own.fresh = False
+        imgui.set_next_item_width(-1.0)
+        entered, own.text = imgui.input_text(
+            "##path", own.text, imgui.InputTextFlags_.enter_returns_true
+        )
+        widgets.note("path")
+        chosen = Path(own.text).expanduser() if entered and own.text.strip() else None
+        chosen = _draw_list(widgets, own) or chosen
+        widgets.caption(f"Endings: {', '.join(own.endings)}")
+        pressed, cancelled = _draw_verbs(widgets, own.verb)
+        if pressed:
+            chosen = Path(own.text).expanduser()
+        if cancelled or (chosen is not None and not chosen.is_dir()):
+            self._own = None
+            imgui.close_current_popup()
+        imgui.end_popup()
+        if chosen is not None and chosen.is_dir():
+            own.text, own.fresh = f"{chosen}/", True
+        elif chosen is not None and not cancelled:
+            own.take(chosen)
+
+    def _draw_confirm(self, widgets: Widgets, path: Path, take: Callable[[Path], None]) -> None:
+        title = "Replace the file?"
+        imgui.open_popup(title)
+        _center(420.0 * widgets.scale)
+        if not imgui.begin_popup_modal(title, None, imgui.WindowFlags_.no_resize)[0]:
+            return
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(f"{path.name} is there already.")
+        imgui.pop_text_wrap_pos()
+        widgets.caption(str(path.parent))
+        replaced, cancelled = _draw_verbs(widgets, "Replace")
+        if replaced or cancelled:
+            self._confirm = None
+            imgui.close_current_popup()
+        imgui.end_popup()
+        if replaced:
+            take(path)
+
+
+def _center(width: float) -> None:
+    middle = imgui.get_main_viewport().get_center()
+    imgui.set_next_window_pos((middle.x, middle.y), imgui.Cond_.always, (0.5, 0.5))
+    imgui.set_next_window_size((width, 0.0))
+
+
+def _draw_verbs(widgets: Widgets, verb: str) -> tuple[bool, bool]:
+    """Draw the verb and "Cancel" at the right; return which was pressed. Esc cancels."""
+    width, gap = 104.0 * widgets.scale, 8.0 * widgets.scale
+    imgui.dummy((0.0, 2.0 * widgets.scale))
+    imgui.set_cursor_pos_x(imgui.get_window_width() - 2 * width - gap - 16.0 * widgets.scale)
+    cancelled = widgets.button("Cancel", "Leave everything as it is.", width=width)
+    imgui.same_line(0.0, gap)
+    pressed = widgets.button(verb, f"{verb} this file.", width=width, primary=True)
+    return pressed, cancelled or imgui.is_key_pressed(imgui.Key.escape)
+
+
+def _draw_list(widgets: Widgets, own: _Own) -> Path | None:
+    """List the folder of the path that is typed; return what was clicked twice."""
+    typed = Path(own.text).expanduser()
+    folder = typed if own.text.endswith("/") else typed.parent
+    if own.listed is None or own.listed[0] != folder:
+        own.listed = (folder, _contents(folder, own.endings))
+    chosen = None
+    imgui.begin_child("##files", (0.0, _LIST_HEIGHT * widgets.scale), imgui.ChildFlags_.frame_style)
+    if folder.parent != folder and imgui.selectable("..", False)[0]:
+        own.text = f"{folder.parent}/".replace("//", "/")
+    for path in own.listed[1]:
+        label = f"{path.name}/" if path.is_dir() else path.name
+        if imgui.selectable(label, path == typed, imgui.SelectableFlags_.allow_double_click)[0]:
+            own.text = f"{path}/" if path.is_dir() else str(path)
+            if imgui.is_mouse_double_clicked(imgui.MouseButton_.left) and not path.is_dir():
+                chosen = path
+        widgets.note(label)
+    imgui.end_child()
+    return chosen
+
+
+def _contents(folder: Path, endings: tuple[str, ...]) -> tuple[Path, ...]:
+    """Return a folder's folders, then its files with one of the endings."""
+    try:
+        found = [path for path in folder.iterdir() if not path.name.startswith(".")]
+        folders = sorted(path for path in found if path.is_dir())
+        files = sorted(path for path in found if path.suffix.lower() in endings and path.is_file())
+    except OSError:
+        return ()
+    return tuple([*folders, *files][:_LISTED])

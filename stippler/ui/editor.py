@@ -1,0 +1,199 @@
+"""The editor in its window: events in, panels and page out, frame by frame."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from stippler.ui.actions import commands_for
+from stippler.ui.canvas import Canvas
+from stippler.ui.dialogs import Dialogs, has_native_dialogs
+from stippler.ui.events import Dropped, Event, KeyDown
+from stippler.ui.gui import Gui
+from stippler.ui.layout import DRAWING, Layout
+from stippler.ui.look import Look
+from stippler.ui.messages import ERROR, INFO, WARNING
+from stippler.ui.panels.dots import draw_dots
+from stippler.ui.panels.notice import draw_invitation, draw_notice
+from stippler.ui.panels.picture import draw_picture
+from stippler.ui.panels.sight import draw_view
+from stippler.ui.panels.status import FrameRate, draw_status
+from stippler.ui.pointer import Pointer
+from stippler.ui.schedule import Schedule
+from stippler.ui.session import Session
+from stippler.ui.view import BLANK, View
+from stippler.ui.widgets import Rect, Widgets
+from stippler.ui.window import Window
+
+_CARET_S = 0.4  # a text field's caret blinks
+_ANSWER_S = 0.1  # how often a system dialog is looked at
+
+
+class Editor:
+    """Draws a session into a window and brings the window's input to it.
+
+    Attributes
+    ----------
+    widgets : Widgets
+        Of the last frame, with the places of its controls.
+    n_frames : int
+        How many frames have been drawn.
+    """
+
+    def __init__(
+        self,
+        window: Window,
+        session: Session,
+        *,
+        native_dialogs: bool | None = None,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self._window, self._clock = window, clock
+        self.session = session
+        self.look = Look()
+        self.view = View(BLANK, window.size_px)
+        self.pointer = Pointer(self.view)
+        native = has_native_dialogs() if native_dialogs is None else native_dialogs
+        self.dialogs = Dialogs(use_native=native)
+        self.gui = Gui(window, self.look.theme)
+        self.canvas = Canvas(window.ctx)
+        self.commands = commands_for(self, session, window)
+        self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
+        self.n_frames = 0
+        self._layout, self._schedule, self._rate = Layout(), Schedule(), FrameRate()
+        self._last_s = clock()
+        self._size_px = window.size_px
+
+    # --- the loop's two halves --------------------------------------------------------------
+
+    def sleep_s(self) -> float:
+        """Return how long nothing needs to be drawn, if nothing happens."""
+        return self._schedule.sleep_s(self._clock())
+
+    def step(self) -> bool:
+        """Take what has happened; draw a frame if it is time for one, and say whether."""
+        began = self._clock()
+        events = self._window.take_events()
+        if events:
+            self._schedule.note_input(began)
+        if self.session.poll():
+            self._schedule.note_result()
+        if not self._schedule.due(began) or 0 in self._window.size_px:
+            return False
+        self._frame(events, began)
+        self._schedule.note_frame(began, self._clock(), moving=self.view.moving)
+        self._plan_wakes()
+        self.n_frames += 1
+        return True
+
+    def close(self) -> None:
+        """Let go of everything on the GPU; the window stays."""
+        self.canvas.close()
+        self.gui.close()
+
+    # --- one frame --------------------------------------------------------------------------
+
+    def _frame(self, events: list[Event], now_s: float) -> None:
+        dt_s, self._last_s = min(now_s - self._last_s, 0.1), now_s
+        self._rate.tick(now_s)
+        self.gui.dress(self.look.theme)
+        self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
+        failure = self.gui.frame(lambda: self._draw_ui(events, dt_s))
+        if failure is not None:
+            self._report(failure, "the window")
+        with self._window.frame() as screen:
+            try:
+                self.canvas.draw(self.session, self.view.camera, self.look)
+            except Exception as error:  # noqa: BLE001 - the editor lives on; the person is told
+                self._report(error, "the page")
+            screen.use()
+            screen.clear(*self.look.theme.desk, 1.0)
+            self.gui.draw()
+        self._window.title = f"{self.session.name} – Stippler" if self.session.name else "Stippler"
+
+    def _draw_ui(self, events: list[Event], dt_s: float) -> None:
+        area = self._layout.draw(self.gui.scale)
+        self._place(area)
+        for event in events:
+            self._take(event)
+        self.view.advance(dt_s)
+        self.canvas.show(area, self.view.size_px)
+        if self.pointer.state.cursor == "hand" and not self.gui.wants_pointer:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+        self._guarded("the panel", self._draw_panel)
+        if self.session.drawing is None and not self.session.busy:
+            draw_invitation(self.widgets, area)
+        self._guarded("the status bar", self._draw_status)
+        self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
+        self._guarded("the dialog", lambda: self.dialogs.draw(self.widgets))
+
+    def _draw_panel(self) -> None:
+        imgui.begin(DRAWING, None, imgui.WindowFlags_.no_collapse)
+        draw_picture(self.widgets, self.session, self.commands)
+        self.widgets.rule()
+        draw_dots(self.widgets, self.session, self.commands)
+        self.widgets.rule()
+        draw_view(self.widgets, self.look, self.commands)
+        imgui.end()
+
+    def _draw_status(self) -> None:
+        zoom = self.view.camera.px_per_mm / self._window.px_per_mm
+        draw_status(self.widgets, self.session, self.pointer.at_mm, zoom, self._rate)
+
+    def _place(self, area: Rect) -> None:
+        """Tell view and pointer where the canvas is."""
+        ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
+        self.pointer.place((area[0] * ratio, area[1] * ratio))
+        self.view.resize(
+            (round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio))
+        )
+        if self.session.drawing is not None:
+            self.view.show(self.session.drawing.page)
+
+    def _take(self, event: Event) -> None:
+        """Bring one event to whom it concerns."""
+        match event:
+            case Dropped(paths=paths):
+                self._drop(paths)
+            case KeyDown() if self.gui.wants_keys or self.dialogs.is_open:
+                pass
+            case KeyDown() if self.commands.take(event):
+                pass
+            case _:
+                self.pointer.take(event, elsewhere=self.gui.wants_pointer)
+
+    def _drop(self, paths: tuple[Path, ...]) -> None:
+        if len(paths) > 1:
+            self.session.messages.say(f"one picture at a time; {paths[0].name} is opened", WARNING)
+        if paths:
+            self.session.open(paths[0])
+
+    # --- what may go wrong, and what comes later ----------------------------------------------
+
+    def _guarded(self, where: str, draw: Callable[[], None]) -> None:
+        """Draw a part; if it fails, close what it left open, tell, and go on with the rest."""
+        state = imgui.internal.ErrorRecoveryState()
+        imgui.internal.error_recovery_store_state(state)
+        try:
+            draw()
+        except Exception as error:  # noqa: BLE001 - a faulty panel must not end the editor
+            imgui.internal.error_recovery_try_to_recover_state(state)
+            self._report(error, where)
+
+    def _report(self, error: Exception, where: str) -> None:
+        what = str(error).strip().partition("\n")[0][:120]
+        text = f"{where} failed ({type(error).__name__}: {what}); the drawing is safe"
+        self.session.messages.say(text, ERROR, error)
+
+    def _plan_wakes(self) -> None:
+        now = self._clock()
+        message = self.session.messages
+        if message.current is not None:
+            self._schedule.wake_at(now + message.left_s + 0.01)
+        if self.gui.wants_keys:
+            self._schedule.wake_at(now + _CARET_S)
+        if self.dialogs.waiting:
+            self._schedule.wake_at(now + _ANSWER_S)

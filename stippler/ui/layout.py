@@ -1,0 +1,61 @@
+"""Where things are: a dock space over the window, the drawing's panel at its left edge."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from stippler.ui.theme import PANEL_WIDTH, STATUS_HEIGHT
+from stippler.ui.widgets import Rect
+
+DRAWING = "Drawing"
+_HOST = (
+    imgui.WindowFlags_.no_decoration
+    | imgui.WindowFlags_.no_docking
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_background
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.no_bring_to_front_on_focus
+    | imgui.WindowFlags_.no_nav_focus
+)
+
+
+class Layout:
+    """Docks the panels when the first frame is drawn; what is left in the middle is the canvas."""
+
+    def __init__(self) -> None:
+        self._docked = False
+
+    def draw(self, scale: float) -> Rect:
+        """Draw the dock space; return the canvas, in ImGui's coordinates."""
+        viewport = imgui.get_main_viewport()
+        size = (viewport.size.x, max(viewport.size.y - STATUS_HEIGHT * scale, 1.0))
+        imgui.set_next_window_pos(viewport.pos)
+        imgui.set_next_window_size(size)
+        imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+        imgui.begin("##host", None, _HOST)
+        imgui.pop_style_var(3)
+        space = imgui.get_id("space")
+        if not self._docked:
+            self._dock(space, size, scale)
+            self._docked = True
+        imgui.dock_space(space, (0.0, 0.0), imgui.DockNodeFlags_.passthru_central_node)
+        imgui.end()
+        middle = imgui.internal.dock_builder_get_central_node(space)
+        left, top = round(middle.pos.x), round(middle.pos.y)
+        right, bottom = round(middle.pos.x + middle.size.x), round(middle.pos.y + middle.size.y)
+        return left, top, max(right, left + 1), max(bottom, top + 1)
+
+    def _dock(self, space: int, size: tuple[float, float], scale: float) -> None:
+        build = imgui.internal
+        build.dock_builder_remove_node(space)
+        build.dock_builder_add_node(space, build.DockNodeFlagsPrivate_.dock_space)
+        build.dock_builder_set_node_size(space, size)
+        share = min(PANEL_WIDTH * scale / max(size[0], 1.0), 0.6)
+        split = build.dock_builder_split_node(space, imgui.Dir.left, share)
+        build.dock_builder_dock_window(DRAWING, split.id_at_dir)
+        build.dock_builder_get_node(split.id_at_dir).set_local_flags(
+            build.DockNodeFlagsPrivate_.no_tab_bar
+        )
+        build.dock_builder_finish(space)
