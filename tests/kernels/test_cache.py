@@ -1,0 +1,44 @@
+"""A changed kernel, or a changed file it imports, is never loaded from the cache."""
+
+import pytest
+
+from stippler.kernels import cache
+
+
+@pytest.fixture
+def house(tmp_path, monkeypatch):
+    (tmp_path / "low.py").write_text("A = 1\n")
+    (tmp_path / "middle.py").write_text("from stippler.kernels.low import A\n")
+    (tmp_path / "top.py").write_text("from stippler.kernels.middle import A\n")
+    (tmp_path / "other.py").write_text("B = 1\n")
+    monkeypatch.setattr(cache, "_HERE", tmp_path)
+    monkeypatch.setenv("STIPPLER_CACHE_DIR", str(tmp_path / "cache"))
+    cache._text.cache_clear()
+    yield tmp_path
+    cache._text.cache_clear()
+
+
+def folders(house):
+    cache._text.cache_clear()
+    return {name: cache.module_folder(str(house / f"{name}.py")) for name in ("top", "other")}
+
+
+def test_a_change_below_moves_the_folder_of_what_imports_it(house):
+    before = folders(house)
+    assert before == folders(house)
+    (house / "low.py").write_text("A = 2\n")
+    after = folders(house)
+    assert after["top"] != before["top"]
+    assert after["other"] == before["other"]
+
+
+def test_the_mark_changes_with_every_file(house):
+    before = cache.all_digest()
+    (house / "other.py").write_text("B = 2\n")
+    cache._text.cache_clear()
+    assert cache.all_digest() != before
+
+
+def test_the_folder_can_be_moved(house):
+    assert cache.cache_root() == house / "cache"
+    assert folders(house)["top"].parent == house / "cache"
