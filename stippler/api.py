@@ -151,9 +151,9 @@ def pulse_density(
     -----
     Deussen et al. 2000, section 4.2; Eschbach 1990.
     """
-    from stippler.stippling.halftone import pulse_density as halftone
+    from stippler.stippling.stipple import pulse_density as halftone
 
-    return halftone(_darkness(image, tone), dots)
+    return halftone(_darkness(image, tone), dots=dots)
 
 
 def relax(points: ArrayLike, polygon: Any, *args: Any, **kwargs: Any) -> NDArray[np.float64]:
