@@ -50,9 +50,7 @@ def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
     return Commands(
         [
             Command("file.open", "Open a picture", open_picture, (Key("o", CTRL),)),
-            Command(
-                "file.export", "Export the drawing", export, (Key("s", CTRL), Key("e", CTRL))
-            ),
+            Command("file.export", "Export the drawing", export, (Key("s", CTRL), Key("e", CTRL))),
             Command("file.quit", "Quit", window.ask_to_close, (Key("q", CTRL),)),
             Command("work.start", "Start", session.start, (Key("enter", CTRL),)),
             Command("work.pause", "Pause or go on", hold, (Key("p"),)),

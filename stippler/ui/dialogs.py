@@ -96,7 +96,9 @@ class Dialogs:
         else:
             self._own = _Own("Open a picture", "Open", f"{folder}/", PICTURES, take)
 
-    def ask_export(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
+    def ask_export(
+        self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]
+    ) -> None:
         """Ask where to write the drawing; a file that is there is not replaced unasked."""
         if self.is_open:
             return

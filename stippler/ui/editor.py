@@ -15,7 +15,7 @@ from stippler.ui.events import Dropped, Event, KeyDown
 from stippler.ui.gui import Gui
 from stippler.ui.layout import DRAWING, Layout
 from stippler.ui.look import Look
-from stippler.ui.messages import ERROR, INFO, WARNING
+from stippler.ui.messages import ERROR, WARNING
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
@@ -147,9 +147,7 @@ class Editor:
         """Tell view and pointer where the canvas is."""
         ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
         self.pointer.place((area[0] * ratio, area[1] * ratio))
-        self.view.resize(
-            (round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio))
-        )
+        self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
 

@@ -24,12 +24,12 @@ class Schedule:
         self._wake_at_s = math.inf
 
     def note_input(self, now_s: float) -> None:
-        """Something a person did."""
+        """Take note of something that a person did."""
         self._frames = _FRAMES_AFTER_INPUT
         self.wake_at(now_s + _TOOLTIP_S)
 
     def note_result(self) -> None:
-        """A worker has something to show."""
+        """Take note that a worker has something to show."""
         self._waiting = True
 
     def wake_at(self, at_s: float) -> None:
@@ -37,7 +37,7 @@ class Schedule:
         self._wake_at_s = min(self._wake_at_s, at_s)
 
     def note_frame(self, began_s: float, ended_s: float, *, moving: bool) -> None:
-        """A frame was drawn; `moving` asks for the next one."""
+        """Take note that a frame was drawn; `moving` asks for the next one."""
         self._frames = max(self._frames - 1, 1 if moving else 0)
         self._waiting = False
         cost = ended_s - began_s

@@ -31,9 +31,9 @@ _RATE_WINDOW_S = 1.0
 class Stipple(Protocol):
     """Makes a job out of a picture, a plan, and the picture's reference if it is known."""
 
-    def __call__(
-        self, source: Source, plan: Plan, reference: Reference | None
-    ) -> Iterator[Work]: ...
+    def __call__(self, source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
+        """Return the job's results to come."""
+        ...
 
 
 class Session:
@@ -144,9 +144,7 @@ class Session:
             self.messages.say("there is no drawing to export yet", WARNING)
             return
         drawing = self._snapshot(self.drawing)
-        self._export_request = self._exporter.start(
-            lambda: work.export_drawing(drawing, path, dpi)
-        )
+        self._export_request = self._exporter.start(lambda: work.export_drawing(drawing, path, dpi))
         self.messages.say(f"writing {path.name}")
 
     # --- what the workers did ---------------------------------------------------------------

@@ -76,10 +76,26 @@ class Widgets:
                 imgui.end_tooltip()
             imgui.pop_style_var()
 
+    def icon_button(self, name: str, icon: str, tip: str) -> bool:
+        """Draw a square button with a sign and no text."""
+        side = imgui.get_frame_height()
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, 0.0))
+        pressed = imgui.button(f"{icon}##{name}", (side, side))
+        imgui.pop_style_var()
+        self.note(name)
+        self.tip(tip)
+        return pressed
+
     # --- controls ---------------------------------------------------------------------------
 
     def button(
-        self, label: str, tip: str, *, icon: str = "", width: float = 0.0, primary: bool = False,
+        self,
+        label: str,
+        tip: str,
+        *,
+        icon: str = "",
+        width: float = 0.0,
+        primary: bool = False,
         enabled: bool = True,
     ) -> bool:
         """Draw a button; return whether it was pressed. A width of -1 takes the rest."""
@@ -90,12 +106,11 @@ class Widgets:
             imgui.push_style_color(imgui.Col_.button_active, (*accent, 0.76))
             imgui.push_style_color(imgui.Col_.text, (*self.theme.on_accent, 1.0))
         imgui.begin_disabled(not enabled)
-        text = f"{icon}  {label}" if icon and label[0] != "#" else f"{icon}{label}"
-        pressed = imgui.button(text, (width, 0.0))
+        pressed = imgui.button(f"{icon}  {label}" if icon else label, (width, 0.0))
         imgui.end_disabled()
         if primary and enabled:
             imgui.pop_style_color(4)
-        self.note(label.strip("#"))
+        self.note(label)
         self.tip(tip)
         return pressed
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 from imgui_bundle import imgui  # noqa: F401  # isort: skip - first: glfw then uses its library
 import glfw
 import moderngl
+import numpy as np
+from numpy.typing import NDArray
 
 from stippler.errors import DisplayError
 from stippler.ui.events import (
@@ -34,6 +35,7 @@ from stippler.ui.events import (
     Released,
     Scrolled,
 )
+from stippler.ui.keys import key_name, mods_of
 from stippler.units import px_per_mm
 
 _NULL_PLATFORM = 0x00060005  # GLFW_PLATFORM_NULL, which python's glfw does not name
@@ -48,22 +50,6 @@ _NO_GL = (
     "install a graphics driver with OpenGL 3.3 (Debian, Ubuntu: apt install libgl1 "
     "libgl1-mesa-dri libglx-mesa0 libegl1), or draw without a window: stippler render"
 )
-
-
-def _key_names() -> dict[int, str]:
-    names = {
-        value: name[4:].lower()
-        for name, value in vars(glfw).items()
-        if name.startswith("KEY_") and isinstance(value, int) and value >= 0
-    }
-    # The keypad types the same digits and signs.
-    return {
-        value: name[3:] if name.startswith("kp_") and len(name) == 4 else name
-        for value, name in names.items()
-    }
-
-
-_KEYS = _key_names()
 
 
 def wake() -> None:
@@ -111,7 +97,9 @@ class Window:
                 do=_NO_DISPLAY,
             )
 
-    def _open(self, title: str, size: tuple[int, int], offscreen: bool) -> glfw._GLFWwindow:
+    def _open(
+        self, title: str, size: tuple[int, int], offscreen: bool
+    ) -> ctypes._Pointer[glfw._GLFWwindow]:
         glfw.default_window_hints()
         glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, 3)
         glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, 3)
@@ -126,7 +114,9 @@ class Window:
             glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
         handle = glfw.create_window(*size, title, None, None)
         if not handle:
-            raise DisplayError(f"no window with OpenGL 3.3 could be made ({self._why()})", do=_NO_GL)
+            raise DisplayError(
+                f"no window with OpenGL 3.3 could be made ({self._why()})", do=_NO_GL
+            )
         return handle
 
     def _context(self) -> moderngl.Context:
@@ -147,7 +137,7 @@ class Window:
         glfw.set_scroll_callback(self._handle, self._on_scroll)
         glfw.set_key_callback(self._handle, self._on_key)
         glfw.set_window_focus_callback(self._handle, self._on_focus)
-        glfw.set_drop_callback(self._handle, self._on_drop)
+        glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]
         exposed = self._on_expose
         glfw.set_window_refresh_callback(self._handle, exposed)
         glfw.set_framebuffer_size_callback(self._handle, exposed)
@@ -161,19 +151,19 @@ class Window:
     def _on_button(self, _: object, button: int, action: int, mods: int) -> None:
         if name := _BUTTONS.get(button):
             kind = Pressed if action == glfw.PRESS else Released
-            self._events.append(kind(name, *self._pointer, glfw.get_time(), _mods(mods)))
+            self._events.append(kind(name, *self._pointer, glfw.get_time(), mods_of(mods)))
 
     def _on_scroll(self, _: object, dx: float, dy: float) -> None:
         held = self._held_mods()
         self._events.append(Scrolled(dx, dy, *self._pointer, glfw.get_time(), held))
 
     def _on_key(self, _: object, key: int, scancode: int, action: int, mods: int) -> None:
-        name = self._key_name(key, scancode)
+        name = key_name(key, scancode)
         if action == glfw.RELEASE:
-            self._events.append(KeyUp(name, _mods(mods), glfw.get_time()))
+            self._events.append(KeyUp(name, mods_of(mods), glfw.get_time()))
         else:
             repeated = action == glfw.REPEAT
-            self._events.append(KeyDown(name, _mods(mods), repeated, glfw.get_time()))
+            self._events.append(KeyDown(name, mods_of(mods), repeated, glfw.get_time()))
 
     def _on_focus(self, _: object, focused: int) -> None:
         if not focused:
@@ -188,14 +178,6 @@ class Window:
     def drop(self, paths: list[Path]) -> None:
         """Take files as if they had been dropped; GLFW cannot be asked to."""
         self._on_drop(None, [str(path) for path in paths])
-
-    def _key_name(self, key: int, scancode: int) -> str:
-        """Name a key by what the person's own keyboard layout prints on it."""
-        if glfw.KEY_SPACE < key < glfw.KEY_ESCAPE:  # the keys that print a sign
-            printed = glfw.get_key_name(key, scancode)
-            if printed and len(printed) == 1 and printed.isascii():
-                return str(printed).lower()
-        return _KEYS.get(key, "unknown")
 
     def _held_mods(self) -> Mods:
         def held(*keys: int) -> bool:
@@ -286,16 +268,17 @@ class Window:
         yield screen
         glfw.swap_buffers(self._handle)
 
+    def pixels(self) -> NDArray[np.uint8]:
+        """Return what the last frame showed, (height, width, 3), sRGB."""
+        width, height = self.size_px
+        data = self.ctx.screen.read(viewport=(0, 0, width, height), components=3, alignment=1)
+        return np.frombuffer(data, np.uint8).reshape(height, width, 3)[::-1].copy()
+
     def close(self) -> None:
         """Close the window and let go of everything."""
         self.ctx.release()
         glfw.destroy_window(self._handle)
         glfw.terminate()
-
-
-def _mods(bits: int) -> Mods:
-    ctrl = glfw.MOD_SUPER if sys.platform == "darwin" else glfw.MOD_CONTROL
-    return Mods(bool(bits & ctrl), bool(bits & glfw.MOD_SHIFT), bool(bits & glfw.MOD_ALT))
 
 
 def _decoded(text: bytes | str) -> str:

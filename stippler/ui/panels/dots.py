@@ -43,8 +43,9 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     )
     changes["first_dots"] = _FIRST_DOTS[chosen]
     changes["iterations"] = widgets.number(
-        "Iterations", plan.iterations, "Relaxation steps: each makes the spacing more even. "
-        "10 to 20 suffice.",
+        "Iterations",
+        plan.iterations,
+        "Relaxation steps: each makes the spacing more even. 10 to 20 suffice.",
     )
     _draw_seed(widgets, session, changes)
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
@@ -89,7 +90,13 @@ def _draw_sizes(widgets: Widgets, session: Session, changes: dict[str, Any]) -> 
     low, high = plan.size_range_mm or _USUAL_RANGE_MM
     widgets.label("Radius")
     _, low, high = imgui.drag_float_range2(
-        "##Radius", low, high, 0.002, *_RADII_MM, "%.3f mm", "%.3f mm",
+        "##Radius",
+        low,
+        high,
+        0.002,
+        *_RADII_MM,
+        "%.3f mm",
+        "%.3f mm",
         imgui.SliderFlags_.always_clamp,
     )
     widgets.note("Radius")
@@ -113,7 +120,7 @@ def _draw_seed(widgets: Widgets, session: Session, changes: dict[str, Any]) -> N
         spare=side + 8.0 * widgets.scale,
     )
     imgui.same_line()
-    if widgets.button("##Another seed", "Another seed, by chance.", icon=ICON_DICE, width=side):
+    if widgets.icon_button("Another seed", ICON_DICE, "Another seed, by chance."):
         changes["seed"] = random.randrange(1, 1_000_000)
 
 

@@ -26,9 +26,7 @@ def draw_notice(widgets: Widgets, messages: Messages, canvas: Rect) -> None:
     scale = widgets.scale
     x0, _, x1, y1 = canvas
     width = min(560.0 * scale, (x1 - x0) - 48.0 * scale)
-    imgui.set_next_window_pos(
-        ((x0 + x1) / 2, y1 - 20.0 * scale), imgui.Cond_.always, (0.5, 1.0)
-    )
+    imgui.set_next_window_pos(((x0 + x1) / 2, y1 - 20.0 * scale), imgui.Cond_.always, (0.5, 1.0))
     imgui.set_next_window_size_constraints((0.0, 0.0), (width, 1e6))
     imgui.push_style_var(imgui.StyleVar_.window_padding, (14.0 * scale, 11.0 * scale))
     imgui.begin("##notice", None, _FLAGS)

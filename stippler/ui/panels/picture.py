@@ -25,7 +25,9 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
     _draw_name(widgets, session)
     width = (imgui.get_content_region_avail().x - 8 * widgets.scale) / 2
     if widgets.button(
-        "Open", f"{commands['file.open'].hint}; or drop one on the window.", icon=ICON_OPEN,
+        "Open",
+        f"{commands['file.open'].hint}; or drop one on the window.",
+        icon=ICON_OPEN,
         width=width,
     ):
         commands["file.open"].run()
@@ -59,8 +61,7 @@ def _draw_name(widgets: Widgets, session: Session) -> None:
     if reference is not None:
         rows, columns = reference.darkness.shape
         widgets.caption(
-            f"{columns:,} × {rows:,} px  ·  "
-            f"{reference.width_mm:.4g} × {reference.height_mm:.4g} mm"
+            f"{columns:,} × {rows:,} px  ·  {reference.width_mm:.4g} × {reference.height_mm:.4g} mm"
         )
     else:
         widgets.caption("being read …")

@@ -27,7 +27,11 @@ def draw_view(widgets: Widgets, look: Look, commands: Commands) -> None:
     )
     if look.reference_shown:
         percent = widgets.slider(
-            "Opacity", look.opacity * 100, 0, 100, "Of the picture under the dots, in percent.",
+            "Opacity",
+            look.opacity * 100,
+            0,
+            100,
+            "Of the picture under the dots, in percent.",
             "%.0f %%",
         )
         look.opacity = percent / 100

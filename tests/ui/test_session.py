@@ -1,0 +1,317 @@
+"""The session with workers played by hand: no threads, no GL, a clock that is set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from stippler.drawing.reference import Reference
+from stippler.errors import PictureError
+from stippler.jobs.worker import Update
+from stippler.stippling.stipple import Plan, Progress
+from stippler.ui.messages import ERROR, INFO, WARNING
+from stippler.ui.session import Session
+from stippler.ui.work import Source, Work
+
+
+class HandWorker:
+    """Records what it is asked; hands back the updates that a test puts in."""
+
+    def __init__(self) -> None:
+        self.jobs: list[Callable[[], Iterator[Any]]] = []
+        self.calls: list[str] = []
+        self.update: Update[Any] | None = None
+
+    def start(self, run: Callable[[], Iterator[Any]]) -> int:
+        self.jobs.append(run)
+        self.update = None
+        return len(self.jobs)
+
+    def stop(self) -> None:
+        self.calls.append("stop")
+
+    def pause(self, paused: bool = True) -> None:
+        self.calls.append("pause" if paused else "resume")
+
+    def poll(self) -> Update[Any] | None:
+        update, self.update = self.update, None
+        return update
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class Stage:
+    """A session and everything around it."""
+
+    def __init__(self) -> None:
+        self.worker, self.exporter, self.clock = HandWorker(), HandWorker(), Clock()
+        self.asked: list[tuple[Source, Plan, Reference | None]] = []
+        self.session = Session(
+            self.worker,  # type: ignore[arg-type]
+            self.exporter,  # type: ignore[arg-type]
+            Plan(n_dots=10),
+            tone="linear",
+            width_mm=100.0,
+            stipple=self._stipple,
+            clock=self.clock,
+        )
+
+    def _stipple(self, source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
+        self.asked.append((source, plan, reference))
+        return iter(())
+
+    def tell(self, work: Work | None, ended: str = "", request: int | None = None, **more: Any):
+        request = len(self.worker.jobs) if request is None else request
+        self.worker.update = Update(request, work, ended, more.get("failure"), 1)
+        return self.session.poll()
+
+    def last_job(self) -> tuple[Source, Plan, Reference | None]:
+        list(self.worker.jobs[-1]())
+        return self.asked[-1]
+
+
+@pytest.fixture
+def stage() -> Stage:
+    return Stage()
+
+
+def reference(width_mm: float = 100.0) -> Reference:
+    return Reference(np.full((20, 40), 0.5, np.float32), width_mm)
+
+
+def dots(n: int, stage: str = "relax", done: int = 1, shift: float = 0.0) -> Progress:
+    place = np.stack([np.linspace(1, 90, n), np.full(n, 10.0 + shift)], axis=1)
+    return Progress(stage, done, 20, place, np.full(n, 0.2, np.float32))
+
+
+def opened(stage: Stage, n: int = 5) -> Reference:
+    """Open a picture and finish it."""
+    picture = reference()
+    stage.session.open(Path("shell.png"))
+    stage.tell(Work("read", 1, 1, picture))
+    stage.tell(Work("done", 1, 1, picture, dots(n, "done")), "finished")
+    return picture
+
+
+def test_a_picture_is_opened_stippled_and_becomes_a_drawing(stage: Stage) -> None:
+    session = stage.session
+    assert (session.phase, session.drawing, session.n_dots) == ("empty", None, 0)
+    session.open(Path("shell.png"))
+    assert (session.phase, session.stage, session.name) == ("running", "read", "shell.png")
+    assert stage.last_job() == (Source(Path("shell.png"), "linear", 100.0), Plan(n_dots=10), None)
+    picture = reference()
+    stage.tell(Work("read", 1, 1, picture))
+    assert session.drawing is not None
+    assert (session.drawing.page.width_mm, session.drawing.page.height_mm) == (100.0, 50.0)
+    assert session.reference is picture
+    before = session.revision
+    stage.tell(Work("relax", 3, 20, picture, dots(5)))
+    assert session.revision > before
+    assert (session.n_dots, session.stage, session.done, session.total) == (5, "relax", 3, 20)
+    assert len(session.drawing.dots) == 0  # not before the job has come to an end
+    stage.tell(Work("done", 1, 1, picture, dots(7, "done")), "finished")
+    assert (session.phase, session.busy, len(session.drawing.dots)) == ("done", False, 7)
+    assert session.messages.log[-1].text == "7 dots drawn"
+
+
+def test_results_of_an_old_request_change_nothing(stage: Stage) -> None:
+    session = stage.session
+    session.open(Path("old.png"))
+    session.open(Path("new.png"))
+    revision = session.revision
+    assert not stage.tell(Work("done", 1, 1, reference(), dots(9)), "finished", request=1)
+    assert (session.phase, session.name, session.n_dots) == ("running", "new.png", 0)
+    assert session.revision == revision
+    stage.tell(Work("done", 1, 1, reference(), dots(3)), "finished", request=2)
+    assert (session.phase, session.n_dots) == ("done", 3)
+
+
+def test_stop_keeps_the_dots_and_ignores_what_comes_later(stage: Stage) -> None:
+    session = stage.session
+    session.open(Path("shell.png"))
+    picture = reference()
+    stage.tell(Work("relax", 1, 20, picture, dots(5)))
+    # one more result waits when stop is pressed: it is not lost
+    stage.worker.update = Update(1, Work("relax", 2, 20, picture, dots(6, shift=1.0)), "", None, 2)
+    session.stop()
+    assert stage.worker.calls == ["stop"]
+    assert (session.phase, session.busy, session.n_dots) == ("stopped", False, 6)
+    assert session.drawing is not None
+    np.testing.assert_array_equal(session.drawing.dots.position_mm[:, 1], 11.0)
+    assert not stage.tell(Work("relax", 3, 20, picture, dots(8)), request=1)
+    assert len(session.drawing.dots) == 6
+
+
+def test_stop_before_the_first_dots_keeps_those_of_the_last_job(stage: Stage) -> None:
+    opened(stage, 5)
+    stage.session.start()
+    stage.session.stop()
+    assert stage.session.drawing is not None
+    assert (stage.session.phase, len(stage.session.drawing.dots)) == ("stopped", 5)
+
+
+def test_stop_at_the_very_end_is_no_stop(stage: Stage) -> None:
+    stage.session.open(Path("shell.png"))
+    stage.worker.update = Update(1, Work("done", 1, 1, reference(), dots(4)), "finished", None, 9)
+    stage.session.stop()
+    assert stage.session.phase == "done"
+    assert stage.worker.calls == []
+
+
+def test_pause_and_resume(stage: Stage) -> None:
+    session = stage.session
+    session.pause()  # nothing runs: nothing happens
+    session.open(Path("shell.png"))
+    session.resume()
+    session.pause()
+    assert (session.phase, session.busy) == ("paused", True)
+    stage.tell(Work("relax", 1, 20, reference(), dots(5)))  # one was on its way
+    assert (session.phase, session.n_dots) == ("paused", 5)
+    session.resume()
+    assert session.phase == "running"
+    assert stage.worker.calls == ["pause", "resume"]
+
+
+def test_start_uses_the_plan_and_what_has_been_read(stage: Stage) -> None:
+    picture = opened(stage)
+    session = stage.session
+    assert not session.outdated
+    assert session.edit_plan(n_dots=99, seed=7)
+    assert session.outdated
+    session.start()
+    source, plan, known = stage.last_job()
+    assert (plan.n_dots, plan.seed) == (99, 7)
+    assert known is picture
+    assert not session.outdated
+    session.tone = "perceptual"
+    assert session.outdated
+    session.start()  # another tone is another reference
+    source, plan, known = stage.last_job()
+    assert (source.tone, known) == ("perceptual", None)
+
+
+def test_start_with_nothing_open_says_so(stage: Stage) -> None:
+    stage.session.start()
+    assert stage.worker.jobs == []
+    assert stage.session.messages.log[-1].level == WARNING
+
+
+def test_restart_while_it_runs_takes_the_same_picture(stage: Stage) -> None:
+    stage.session.open(Path("shell.png"))
+    stage.session.edit_plan(iterations=3)
+    stage.session.start()
+    source, plan, _ = stage.last_job()
+    assert (source.path.name, plan.iterations) == ("shell.png", 3)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"n_dots": 0},
+        {"n_dots": 10**9},
+        {"iterations": -1},
+        {"seed": -1},
+        {"size_range_mm": (0.4, 0.2)},
+        {"size_range_mm": (float("nan"), 1.0)},
+        {"first_dots": "sneeze"},
+    ],
+)
+def test_a_bad_value_is_refused_with_a_line(stage: Stage, changes: dict[str, Any]) -> None:
+    plan = stage.session.plan
+    assert not stage.session.edit_plan(**changes)
+    assert stage.session.plan is plan
+    line = stage.session.messages.current
+    assert line is not None
+    assert line.level == WARNING
+    assert "\n" not in line.text
+
+
+def test_a_picture_that_cannot_be_read_leaves_the_open_one(stage: Stage) -> None:
+    opened(stage, 5)
+    session = stage.session
+    session.open(Path("notes.txt"))
+    failure = PictureError("is no picture we read", "notes.txt", "give a PNG")
+    stage.tell(None, "failed", failure=failure)
+    assert (session.phase, session.name, session.n_dots) == ("failed", "shell.png", 5)
+    line = session.messages.current
+    assert line is not None
+    assert (line.level, line.text) == (ERROR, str(failure))
+    session.start()
+    assert stage.last_job()[0].path.name == "shell.png"
+
+
+def test_a_first_picture_that_cannot_be_read_leaves_the_desk_empty(stage: Stage) -> None:
+    stage.session.open(Path("notes.txt"))
+    stage.tell(None, "failed", failure=PictureError("is no picture"))
+    assert (stage.session.phase, stage.session.drawing) == ("empty", None)
+
+
+def test_an_all_white_picture_is_a_drawing_without_dots(stage: Stage) -> None:
+    stage.session.open(Path("snow.png"))
+    stage.tell(Work("done", 1, 1, reference(), dots(0, "done")), "finished")
+    assert stage.session.phase == "done"
+    assert stage.session.drawing is not None
+    assert "all white" in stage.session.messages.log[-1].text
+
+
+def test_steps_a_second_come_from_the_clock(stage: Stage) -> None:
+    stage.session.open(Path("shell.png"))
+    for done in range(0, 61, 2):  # 2 steps every 50 ms
+        stage.tell(Work("relax", done, 100, reference(), dots(3)))
+        stage.clock.now += 0.05
+    assert stage.session.steps_per_s == pytest.approx(40.0)
+    for done in range(61, 101):  # then 10 steps a second: the last second counts
+        stage.clock.now += 0.05
+        stage.tell(Work("relax", 60 + (done - 60) // 2, 100, reference(), dots(3)))
+    assert stage.session.steps_per_s == pytest.approx(10.0, rel=0.1)
+
+
+def test_export_writes_a_copy_beside_the_job(stage: Stage, tmp_path: Path) -> None:
+    session = stage.session
+    session.export(tmp_path / "early.csv", 300.0)
+    assert stage.exporter.jobs == []
+    opened(stage, 5)
+    session.start()
+    path = tmp_path / "out.csv"
+    session.export(path, 300.0)
+    assert session.exporting
+    assert session.busy
+    session.export(tmp_path / "other.csv", 300.0)  # one at a time
+    assert len(stage.exporter.jobs) == 1
+    stage.tell(Work("relax", 1, 20, reference(), dots(9)))  # the job goes on
+    assert list(stage.exporter.jobs[0]()) == [path]
+    assert len(path.read_text().splitlines()) == 1 + 5
+    stage.exporter.update = Update(1, path, "finished", None, 1)
+    assert session.poll()
+    assert not session.exporting
+    assert session.messages.log[-1].level == INFO
+    assert str(path) in session.messages.log[-1].text
+
+
+def test_an_export_in_the_midst_of_a_job_holds_the_dots_that_are_shown(
+    stage: Stage, tmp_path: Path
+) -> None:
+    stage.session.open(Path("shell.png"))
+    stage.tell(Work("relax", 1, 20, reference(), dots(9)))
+    stage.session.export(tmp_path / "out.csv", 300.0)
+    list(stage.exporter.jobs[0]())
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 1 + 9
+
+
+def test_an_export_that_fails_says_why(stage: Stage, tmp_path: Path) -> None:
+    opened(stage)
+    stage.session.export(tmp_path / "out.csv", 300.0)
+    failure = PictureError("the disk is full", tmp_path / "out.csv")
+    stage.exporter.update = Update(1, None, "failed", failure, 0)
+    stage.session.poll()
+    assert stage.session.messages.log[-1].level == ERROR
+    assert not stage.session.exporting
