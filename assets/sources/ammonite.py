@@ -162,7 +162,7 @@ def _blur(field: Field, inside: NDArray[np.bool_], sigma: float) -> Field:
 
 def _shade_ground(floor: Field) -> Field:
     """Shadow on white paper, fading to exactly 1."""
-    shade = np.clip(1.0 - floor - 0.05, 0.0, 1.0) / 0.95
+    shade = np.clip(1.0 - floor - 0.085, 0.0, 1.0) / 0.915
     return encode(1.0 - 0.94 * shade * shade * (1.5 - 0.5 * shade))
 
 
