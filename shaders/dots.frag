@@ -10,7 +10,7 @@ flat in vec4 v_to_unit;
 flat in vec4 v_rough0, v_rough1, v_rough2, v_rough3;
 #endif
 
-out vec2 o_ink;
+out float o_ink;
 
 void main() {
     vec2 offset = gl_FragCoord.xy - v_dot.xy;
@@ -33,5 +33,5 @@ void main() {
 #endif
     float distance_px = (t - edge) / length(gradient * to_unit);
 #endif
-    o_ink = vec2(clamp(0.5 - distance_px, 0.0, 1.0) * opacity);
+    o_ink = clamp(0.5 - distance_px, 0.0, 1.0) * opacity;
 }

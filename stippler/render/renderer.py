@@ -113,14 +113,22 @@ class Renderer:
         target.viewport = (0, 0, *size_px)
         target.color_mask = True, True, True, True
         target.clear(*desk, 1.0)
-        self._paper.draw(camera, size_px, self._page_mm, paper, desk)
-        self._reference.draw(camera, size_px, self._opacity, ink)
-        self._ink.lay(camera, size_px, self._page_mm, ink)
+        # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
+        is_bare = not self._shows_reference and camera.rotation_rad == 0.0
+        page_mm, radius_mm = self._page_mm, self._dots.buffer.mean_radius_mm
+        self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
+        if self._shows_reference:
+            self._reference.draw(camera, size_px, self._opacity, ink)
+        self._ink.lay(camera, size_px, page_mm, radius_mm, ink, paper if is_bare else None)
 
     def release(self) -> None:
         """Free every GL object."""
         for one in (self._dots, self._ink, self._reference, self._paper):
             one.release()
+
+    @property
+    def _shows_reference(self) -> bool:
+        return self._opacity > 0 and self._reference.is_set
 
     @property
     def _origin_mm(self) -> tuple[float, float]:
