@@ -24,9 +24,9 @@ class DotBuffer:
         Dots in it.
     revision : int
         Counts changes.
-    is_round, is_rough : bool
-        Whether all are round and smooth; whether any is rough. After partial updates they may
-        be wrong towards the costlier side.
+    is_round, is_rough, has_flags : bool
+        Whether all are round and smooth; any is rough; any is fixed or selected. After partial
+        updates they may be wrong towards the costlier side.
     max_radius_mm, max_elongation : float
         At least as large as any dot's.
     mean_radius_mm : float
@@ -55,6 +55,7 @@ class DotBuffer:
         flags = _flags(dots.fixed, selected)
         gpu_dots.pack(dots, origin_mm, flags, self._row_of_slot, self.rows)
         self._forget()
+        self.has_flags = bool(flags.any())
         self._learn(dots.radius_mm, dots.elongation, dots.roughness)
         self.mean_radius_mm = _weighted_mean(dots.radius_mm)
         self._upload()
@@ -95,7 +96,9 @@ class DotBuffer:
         slots = np.sort(self._slot_of_row[rows])
         changed = self._row_of_slot[slots]
         fresh = gpu_dots.words(len(slots))
-        gpu_dots.pack(dots, origin_mm, _flags(dots.fixed, selected), changed, fresh)
+        flags = _flags(dots.fixed, selected)
+        gpu_dots.pack(dots, origin_mm, flags, changed, fresh)
+        self.has_flags = self.has_flags or bool(flags[rows].any())
         self._words[slots] = fresh
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
         self._upload_runs(slots)
@@ -141,7 +144,7 @@ class DotBuffer:
         return True
 
     def _forget(self) -> None:
-        self.is_round, self.is_rough = True, False
+        self.is_round, self.is_rough, self.has_flags = True, False, False
         self.max_radius_mm, self.max_elongation = 0.0, 1.0
 
     def _learn(

@@ -62,6 +62,7 @@ class ReferencePass:
                 "u_rect_mm": (0.0, 0.0, *self._size_mm),
                 "u_size_mm": self._size_mm,
                 "u_darkness": 0,
+                "u_px_per_mm": camera.px_per_mm,
                 "u_opacity": min(opacity, 1.0),
                 "u_ink_color": ink,
             }
