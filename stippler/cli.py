@@ -12,6 +12,7 @@ import typer
 from typer.exceptions import TyperException
 
 from stippler.errors import ParameterError, StipplerError
+from stippler.kernels.lean import skip_blas
 
 if TYPE_CHECKING:
     from stippler.stippling.stipple import Plan
@@ -192,6 +193,7 @@ def _terminate(signum: int, frame: Any) -> NoReturn:
 def main() -> None:
     """Run the command line and end the process: 0 done, 1 failed, 2 usage, 130 interrupted."""
     signal.signal(signal.SIGTERM, _terminate)
+    skip_blas()
     args = sys.argv[1:]
     if not args or args[0] not in (*COMMANDS, "--help", "--version"):
         args = ["edit", *args]  # `stippler photo.jpg`

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from stippler.errors import DisplayError
 from stippler.kernels.cache import all_digest, cache_root
+from stippler.kernels.lean import skip_blas
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
@@ -75,6 +76,7 @@ def _write(drawing: Drawing) -> None:
 
 
 def _main() -> None:
+    skip_blas()
     if is_warm():
         return
     start = time.perf_counter()
