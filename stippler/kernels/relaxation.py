@@ -44,6 +44,12 @@ U1 = NDArray[np.uint8]
 INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 """What a cell is: bounded by dots alone; by a border as well; not computed."""
 
+APART = 1e-300
+"""Least squared distance of dots that count as two."""
+
+NEAR = 1.1
+"""Squared distance, in grid cells, of the dots that cut first: fewer cuts are wasted."""
+
 
 @inline
 def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
@@ -67,7 +73,15 @@ def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[in
 
 @inline
 def _distance2_to_span(
-    x: float, y: float, row: int, first: int, last: int, gx: float, gy: float, h: float, slack: float
+    x: float,
+    y: float,
+    row: int,
+    first: int,
+    last: int,
+    gx: float,
+    gy: float,
+    h: float,
+    slack: float,
 ) -> float:
     """Return the squared distance to the nearest place a dot of these grid cells can be."""
     dx = max(max(gx + first * h - x, x - (gx + (last + 1) * h)) - slack, 0.0)
@@ -77,7 +91,17 @@ def _distance2_to_span(
 
 @inline
 def seen_distance(
-    x: float, y: float, ring: int, ix: int, iy: int, nx: int, ny: int, gx: float, gy: float, h: float, slack: float
+    x: float,
+    y: float,
+    ring: int,
+    ix: int,
+    iy: int,
+    nx: int,
+    ny: int,
+    gx: float,
+    gy: float,
+    h: float,
+    slack: float,
 ) -> float:
     """Return the distance within which all dots of the compartment are in rings up to `ring`."""
     best = math.inf
@@ -428,13 +452,20 @@ def relax_dots(
         while True:
             reach2 = 0.0
             if is_packed:
-                for s in range(3 if ring == 1 else 4 * ring):
-                    row, first, last = ring_span(ring, s, ix, iy, nx, ny)
+                for s in range(6 if ring == 1 else 4 * ring):
+                    is_first = ring == 1 and s < 3
+                    row, first, last = ring_span(
+                        ring, s - 3 if ring == 1 and s >= 3 else s, ix, iy, nx, ny
+                    )
                     if last < first:
                         continue
-                    reach2 = reach2_of(U, V, m)
-                    if _distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= 4.0 * reach2:
-                        continue
+                    least, limit = APART, NEAR * h * h
+                    if not is_first:
+                        limit = 4.0 * reach2_of(U, V, m)
+                        if ring == 1:
+                            least = NEAR * h * h
+                        elif _distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= limit:
+                            continue
                     a = first_cell + row * nx
                     m = cut_lanes_by_run(
                         U,
@@ -447,7 +478,8 @@ def relax_dots(
                         y,
                         cell_start[a + first],
                         cell_start[a + last + 1],
-                        reach2,
+                        least,
+                        limit,
                     )
                     if m == OVERFLOW:
                         break

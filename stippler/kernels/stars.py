@@ -35,6 +35,7 @@ F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
 U1 = NDArray[np.uint8]
 
+
 @kernel
 def verify_stars(
     start: int,

@@ -103,16 +103,16 @@ def cut_lanes_by_run(
     y: float,
     first: int,
     end: int,
-    reach2: float,
+    least: float,
+    limit: float,
 ) -> int:
     """Cut the cell of (x, y) by the dots first..end; return its corners, or `OVERFLOW`.
 
-    Dots further than twice the cell's reach cannot cut it.
+    Only dots with ``least <= distance² < limit`` count.
     """
-    limit = 4.0 * reach2
     j = first
     while j < end:
-        near = near_mask(xs, ys, j, x, y, limit)
+        near = near_mask(xs, ys, j, x, y, least, limit)
         if end - j < SCAN:
             near &= (1 << (end - j)) - 1
         while near != 0:
