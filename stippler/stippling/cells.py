@@ -67,7 +67,7 @@ class Cells:
         self._set_density(density)
         self._slack = np.inf
         self._keep = False
-        self._star = np.empty((n, LANES), np.int32)
+        self._star = np.zeros((n, LANES), np.int32)
         self._n_star = np.zeros(n, np.uint8)
         self._kind_of_cell = np.zeros(n, np.uint8)
         self._has_stars = False
