@@ -15,7 +15,7 @@ from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.lean import skip_blas
 
 if TYPE_CHECKING:
-    from stippler.stippling.stipple import Plan
+    from stippler.stippling.plan import Plan
 
 DEFAULT_WIDTH_MM = 148.0  # A5
 
@@ -155,7 +155,7 @@ def _sample() -> Path:
 def _plan(
     dots: int | None, size_range: str | None, iterations: int, seed: int, first_dots: str
 ) -> Plan:
-    from stippler.stippling.stipple import Plan
+    from stippler.stippling.plan import Plan
 
     return Plan(
         n_dots=dots,

@@ -48,7 +48,8 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
 
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from stippler.stippling.stipple import FIRST_DOTS, Plan, stages
+    from stippler.stippling.plan import FIRST_DOTS, Plan
+    from stippler.stippling.stipple import stages
 
     ramp = np.linspace(0, 1, 64 * 64, dtype=np.float32).reshape(64, 64)
     reference = Reference(ramp, 20.0)

@@ -6,15 +6,20 @@ there, at the cost of a rectangle.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import moderngl
 import numpy as np
 from imgui_bundle import imgui
 
 from stippler.camera import Camera, Size
-from stippler.render.renderer import Renderer
 from stippler.ui.look import Look
 from stippler.ui.session import Session
 from stippler.ui.widgets import Rect
+
+if TYPE_CHECKING:
+    from stippler.drawing.drawing import Page
+    from stippler.render.renderer import Renderer
 
 
 class Canvas:
@@ -28,7 +33,7 @@ class Canvas:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._renderer = Renderer(ctx)
+        self._made: Renderer | None = None  # with the first drawing
         self._texture: moderngl.Texture | None = None
         self._target: moderngl.Framebuffer | None = None
         self._drawn: object = None
@@ -42,45 +47,54 @@ class Canvas:
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
 
-    def upload(self, session: Session) -> None:
-        """Bring what has changed since the last call to the GPU."""
-        if session.revision == self._uploaded:
-            return
-        self._uploaded = session.revision
-        drawing = session.drawing
-        if drawing is not None:
-            self._renderer.set_page(drawing.page.width_mm, drawing.page.height_mm)
-        if session.position_mm is not None and session.radius_mm is not None:
-            self._renderer.set_positions(session.position_mm, session.radius_mm)
-        else:
-            self._renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
-
     def draw(self, session: Session, camera: Camera, look: Look) -> bool:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
-        key = (camera, self._texture.size, session.revision, look.theme, look.reference_opacity)
+        size_px = self._texture.size
+        key = (camera, size_px, session.revision, look.theme, look.reference_opacity)
         if key == self._drawn:
             return False
-        self.upload(session)
-        self._renderer.set_reference(
-            session.reference if look.reference_shown else None, look.reference_opacity
-        )
         if session.drawing is None:
             self._target.use()
             self._target.clear(*look.theme.desk, 1.0)
         else:
-            self._renderer.draw(
+            renderer = self._renderer()
+            self._upload(renderer, session, session.drawing.page)
+            renderer.set_reference(
+                session.reference if look.reference_shown else None, look.reference_opacity
+            )
+            colours = look.theme
+            renderer.draw(
                 camera,
-                self._texture.size,
+                size_px,
                 self._target,
-                paper=look.theme.paper,
-                desk=look.theme.desk,
-                ink=look.theme.ink,
+                paper=colours.paper,
+                desk=colours.desk,
+                ink=colours.ink,
             )
         self._drawn = key
         self.n_drawn += 1
         return True
+
+    def _renderer(self) -> Renderer:
+        """Return the renderer; it is imported late, for the sake of the first frame."""
+        if self._made is None:
+            from stippler.render.renderer import Renderer
+
+            self._made = Renderer(self._ctx)
+        return self._made
+
+    def _upload(self, renderer: Renderer, session: Session, page: Page) -> None:
+        """Bring what has changed since the last call to the GPU."""
+        if session.revision == self._uploaded:
+            return
+        renderer.set_page(page.width_mm, page.height_mm)
+        if session.position_mm is not None and session.radius_mm is not None:
+            renderer.set_positions(session.position_mm, session.radius_mm)
+        else:
+            renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
+        self._uploaded = session.revision
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
         if self._texture is None or self._texture.size != size_px:
@@ -99,4 +113,5 @@ class Canvas:
     def close(self) -> None:
         """Free every GL object."""
         self._free()
-        self._renderer.release()
+        if self._made is not None:
+            self._made.release()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update, Worker
-    from stippler.stippling.stipple import Plan
+    from stippler.stippling.plan import Plan
 
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 PHASES: tuple[Phase, ...] = get_args(Phase)
@@ -45,6 +45,8 @@ class Session:
         Where drawings are made and written; the owner closes them.
     plan : Plan
         To begin with.
+    stipple : callable
+        Makes the jobs.
 
     Attributes
     ----------
@@ -68,7 +70,7 @@ class Session:
         *,
         tone: str,
         width_mm: float,
-        stipple: Stipple = work.stipple_picture,
+        stipple: Stipple,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._worker, self._exporter, self._stipple, self._clock = worker, exporter, stipple, clock

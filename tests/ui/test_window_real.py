@@ -14,7 +14,7 @@ import pytest
 from PIL import ImageGrab
 
 from stippler.app import App
-from stippler.stippling.stipple import Plan
+from stippler.stippling.plan import Plan
 from stippler.ui.host import Host
 from stippler.ui.theme import LIGHT, Colour
 
