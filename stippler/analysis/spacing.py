@@ -46,7 +46,7 @@ def measure_spacing(points: NDArray[np.float64]) -> Spacing:
     n = len(points)
     if n < 3:
         return Spacing(*[float("nan")] * 5)
-    distance = KDTree(points).query(points, k=min(8, n))[0]
+    distance = np.asarray(KDTree(points).query(points, k=min(8, n))[0])
     nearest = distance[:, 1]
     ratio = nearest / np.maximum(distance[:, -1], 1e-300)
     return Spacing(
@@ -67,10 +67,14 @@ def _edge_variance(points: NDArray[np.float64]) -> float:
     from scipy.spatial import Delaunay, QhullError
 
     try:
-        triangles = Delaunay(points).simplices
+        mesh = Delaunay(points)
     except QhullError:  # all dots on one line
         return float("nan")
+    triangles = mesh.simplices
     sides = np.concatenate((triangles[:, :2], triangles[:, 1:], triangles[:, ::2]))
     sides = np.unique(np.sort(sides, axis=1), axis=0)
+    sides = sides[~np.isin(sides, mesh.convex_hull).any(axis=1)]  # slivers along the hull
+    if len(sides) < 2:
+        return float("nan")
     length = np.linalg.norm(points[sides[:, 0]] - points[sides[:, 1]], axis=1)
     return float(length.var() / length.mean() ** 2)

@@ -104,5 +104,5 @@ def measure_size_noise(points: NDArray[np.float64], radii: NDArray[np.float64]) 
     n = len(points)
     if n < 8:
         return math.nan
-    near = KDTree(points).query(points, k=7)[1][:, 1:]
+    near = np.asarray(KDTree(points).query(points, k=7)[1])[:, 1:]
     return float(np.sqrt(np.mean(np.log(radii / radii[near].mean(axis=1)) ** 2)))
