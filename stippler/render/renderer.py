@@ -125,7 +125,8 @@ class Renderer:
         # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
         is_bare = not self._shows_reference and camera.rotation_rad == 0.0
         page_mm = self._page_mm
-        self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
+        if paper != desk:
+            self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
         if self._shows_reference:
             self._reference.draw(camera, size_px, self._opacity, ink)
         self._ink.lay(camera, size_px, page_mm, ink, paper if is_bare else None)

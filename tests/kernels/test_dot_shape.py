@@ -1,5 +1,6 @@
 """The formula of outlines: area kept, closed, free of crossings; against plain trigonometry."""
 
+import itertools
 import math
 
 import numpy as np
@@ -135,7 +136,7 @@ def test_four_segments_make_an_ellipse():
 
 def test_seeds_and_harmonics_differ():
     outlines = [dot_shape.outlines(one(roughness=1.0, seed=s), 64)[0] for s in range(50)]
-    for a, b in zip(outlines[:-1], outlines[1:], strict=True):
+    for a, b in itertools.pairwise(outlines):
         assert np.abs(a - b).max() > 0.05
 
 

@@ -86,7 +86,7 @@ def test_small_and_large_dots_meet_without_a_seam(page, ink, many, kind):
     """At the zoom where sprites give way to quads, ink grows with the square of the scale."""
     page.set_dots(many(10, 8, kind))
     measured = []
-    for scale in np.linspace(20, 110, 12):
+    for scale in np.linspace(12, 60, 8):
         size = (round(40 * scale), round(30 * scale))
         seen = ink(Camera((20, 15), size[0] / 40), size)
         measured.append(seen.sum() / size[0] ** 2)
@@ -157,7 +157,7 @@ def test_removed_dots_are_gone(page, ink, many):
     page.set_dots(dots)
     page.update_dots(dots.take(slice(0, 5)), np.array([0]))
     assert page.n_dots == 5
-    assert 0 < ink(FIT, SIZE).sum()
+    assert ink(FIT, SIZE).sum() > 0
     page.set_dots(Dots.none())
     assert (ink(FIT, SIZE) == 0).all()
 
