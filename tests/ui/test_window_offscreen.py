@@ -159,7 +159,7 @@ def test_the_page_is_drawn_only_when_it_changes(desk, picture: Path) -> None:
         desk.host.move(x, 300)
     assert editor.n_frames > frames
     assert canvas.n_drawn == drawn
-    desk.host.click("Show the picture")
+    desk.host.click("Show picture")
     assert canvas.n_drawn > drawn
 
 
