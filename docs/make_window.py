@@ -37,7 +37,9 @@ def main() -> None:
     env = {**os.environ, "DISPLAY": display}
     sample = ROOT / "assets" / "samples" / "ammonite.png"
     editor = subprocess.Popen(
-        [sys.executable, "-c", EDITOR, str(sample), "--dots", chosen.dots], env=env
+        [sys.executable, "-c", EDITOR, str(sample), "--dots", chosen.dots],
+        env=env,
+        stderr=subprocess.DEVNULL,
     )
     try:
         wait_until_idle(editor.pid)
