@@ -89,11 +89,11 @@ def test_shortfall_is_where_thin_dots_are_too_few():
 @given(st.floats(0.03, 0.97))
 def test_on_a_grid_the_ink_is_exactly_the_darkness(darkness):
     field = frozen(np.full((120, 120), darkness))
-    points = hexagons(120, 120, 6.0)
+    points = hexagons(120, 120, 6.1373)
     radii = solved(points, field, 0.05, 6.0)
     inner = (np.abs(points - 60) < 30).all(axis=1)
     assert np.ptp(radii[inner]) < 1e-3 * radii[inner].mean()
-    ink = draw_ink(points, radii, (120, 120), zoom=8)
+    ink = draw_ink(points, radii, (120, 120), zoom=16)
     seen = gaussian_filter(ink, 8.0)[50:70, 50:70]
     assert seen.mean() == pytest.approx(darkness, abs=2e-3)
 
