@@ -289,7 +289,7 @@ def test_it_sleeps_when_nothing_changes(desk, picture: Path) -> None:
     assert desk.app.editor.n_frames == frames
 
 
-def test_closing_while_work_runs_ends_at_once(picture: Path) -> None:
+def test_closing_while_work_runs_ends_at_once(kernels: None, picture: Path) -> None:
     from stippler.app import App
 
     app = App(Plan(n_dots=300, iterations=100_000), tone="linear", width_mm=50.0, offscreen=True)
