@@ -48,11 +48,10 @@ class Host:
     def settle(self) -> None:
         """Go on until what has happened so far has been drawn."""
         for _ in range(_SETTLED):
-            if self._step(0.0):
-                continue
-            if self._editor.sleep_s() > _SOON_S:
-                return
-            self._step(_SOON_S)
+            if not self._step(0.0):
+                if self._editor.idle:
+                    return
+                self._step(_SOON_S)
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Go on until something is true.

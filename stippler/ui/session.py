@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 from stippler.errors import ParameterError
 from stippler.ui import work
-from stippler.ui.messages import ERROR, INFO, WARNING, Messages
+from stippler.ui.messages import ERROR, WARNING, Messages
+from stippler.ui.rates import StepRate
 from stippler.ui.work import Source, Work
 
 if TYPE_CHECKING:
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update, Worker
     from stippler.stippling.plan import Plan
+    from stippler.stippling.stipple import Progress
 
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 PHASES: tuple[Phase, ...] = get_args(Phase)
-_RATE_WINDOW_S = 1.0
 
 
 class Stipple(Protocol):
@@ -85,11 +85,11 @@ class Session:
         self.messages = Messages(clock)
         self.phase: Phase = "empty"
         self.stage, self.done, self.total = "", 0, 0
-        self.steps_per_s = 0.0
         self._asked: Source | None = None  # what the job that runs was asked for
+        self._last: Progress | None = None
         self._request: int | None = None
         self._export_request: int | None = None
-        self._steps: deque[tuple[float, int]] = deque()
+        self._steps = StepRate()
 
     # --- what a person does -----------------------------------------------------------------
 
@@ -116,7 +116,7 @@ class Session:
         if self.phase == "paused":
             self._worker.pause(False)
             self.phase = "running"
-            self._steps.clear()
+            self._steps.forget()
 
     def stop(self) -> None:
         """End the job; the dots that are there stay, and become the drawing's."""
@@ -201,6 +201,11 @@ class Session:
         return self._export_request is not None
 
     @property
+    def steps_per_s(self) -> float:
+        """Relaxation steps a second in the work that runs, or the last; 0 before any."""
+        return self._steps.per_s
+
+    @property
     def n_dots(self) -> int:
         """How many dots there are to show."""
         return 0 if self.position_mm is None else len(self.position_mm)
@@ -233,21 +238,22 @@ class Session:
         self._request = self._worker.start(lambda: stipple(source, plan, known))
         self._asked, self.running_plan, self.phase = source, plan, "running"
         self.stage, self.done, self.total = work.READ if known is None else "first dots", 0, 0
-        self.steps_per_s = 0.0
-        self._steps.clear()
+        self._last = None
+        self._steps = StepRate()
 
     def _take(self, result: Work) -> None:
         self.stage, self.done, self.total = result.stage, result.done, result.total
         if result.reference is not None and result.reference is not self.reference:
             self._adopt(result.reference)
         if result.progress is not None:
+            self._last = result.progress
             self.position_mm, self.radius_mm = (
                 result.progress.position_mm,
                 result.progress.radius_mm,
             )
             self.revision += 1
         if result.stage == "relax":
-            self._measure(result.done)
+            self._steps.note(self._clock(), result.done)
 
     def _adopt(self, reference: Reference) -> None:
         from stippler.drawing.drawing import Drawing, Page
@@ -257,15 +263,6 @@ class Session:
         self.source = self._asked
         self.position_mm = self.radius_mm = None
         self.revision += 1
-
-    def _measure(self, done: int) -> None:
-        now = self._clock()
-        self._steps.append((now, done))
-        while now - self._steps[0][0] > _RATE_WINDOW_S and len(self._steps) > 2:
-            self._steps.popleft()
-        (t0, d0), (t1, d1) = self._steps[0], self._steps[-1]
-        if t1 > t0:
-            self.steps_per_s = (d1 - d0) / (t1 - t0)
 
     def _end(self, phase: Phase) -> None:
         self._request, self.phase = None, phase
@@ -290,7 +287,12 @@ class Session:
         return work.frozen(drawing)
 
     def _report(self) -> None:
-        if not self.n_dots:
+        """Say what has been drawn, and what it falls short of."""
+        from stippler.stippling.stipple import notes_on
+
+        self.messages.say(f"{self.n_dots:,} dots drawn")
+        notes = notes_on(self._last) if self._last is not None else ()
+        if notes:
+            self.messages.say("; ".join(notes), WARNING)
+        elif not self.n_dots:
             self.messages.say("the picture is all white: a drawing without dots", WARNING)
-        else:
-            self.messages.say(f"{self.n_dots:,} dots drawn", INFO)
