@@ -127,11 +127,8 @@ class Host:
 
     def fill(self, label: str, text: str) -> None:
         """Replace what stands in a field, by its label, and press Enter."""
-        self.move(*self.place(label))
-        for _ in range(3):  # the third click marks the line
-            self.press()
-            self.release()
-        self.settle()
+        if not self._editor.gui.wants_keys:
+            self.click(label)  # marks all
         self.type(text)
         self.key("enter")
 
