@@ -18,8 +18,8 @@ from stippler.drawing.drawing import Drawing, Page
 from stippler.files.svg import svg_chunks
 
 PAGE = Page(40, 30)
-LARGE = 160  # pixels a mm
-SCALES = (4, 10, 16, 32)  # dots from half a pixel to seven in radius
+LARGE = 96  # pixels a mm
+SCALES = (4, 8, 16, 32)  # dots from half a pixel to seven in radius
 KINDS = ("round", "smooth", "rough")
 TILE = 16
 INK = 0.005  # agreement in ink, of all of it
