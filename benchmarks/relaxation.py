@@ -306,7 +306,8 @@ def shapely_step(xy: Points) -> Points:
     x0, y0, x1, y1 = shapely.bounds(cells).T
     out = (x0 < 0) | (y0 < 0) | (x1 > 1) | (y1 > 1)
     cells[out] = shapely.intersection(cells[out], square)
-    return shapely.get_coordinates(shapely.centroid(cells))
+    centroids: Points = shapely.get_coordinates(shapely.centroid(cells))
+    return centroids
 
 
 def d3_step_s(n: int) -> float | None:

@@ -149,7 +149,8 @@ def variance_picture() -> None:
     )
     (FOLDER / "variance.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * SIDE + 40:.0f}" '
-        f'height="{SIDE + 50:.0f}" font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="white"/>'
+        f'height="{SIDE + 50:.0f}" font-family="sans-serif" font-size="12">'
+        f'<rect width="100%" height="100%" fill="white"/>'
         f'<g transform="translate(25 15)"><path d="M0 0V{SIDE}H{2 * SIDE}" fill="none" '
         f'stroke="#888"/>{"".join(lines)}{key}<text x="300" y="68">dashed: w = 1.5</text>'
         f'<text y="{SIDE + 24}">variance of edge lengths, share of the start, over 20 steps</text>'
