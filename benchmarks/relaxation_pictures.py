@@ -159,8 +159,18 @@ def variance_picture() -> None:
     )
 
 
+def print_failures() -> None:
+    """Print how many stars fail in a step, 50,000 random dots in a square."""
+    engine = Relaxation(np.random.default_rng(1).random((50_000, 2)), box(0, 0, 1, 1))
+    for step in range(1, 21):
+        engine.step()
+        if step in (2, 5, 20):
+            print(f"step {step:2}: {engine.n_failed / 50_000:.1%} of the stars fail")
+
+
 def main() -> None:
     """Make all pictures."""
+    print_failures()
     FOLDER.mkdir(parents=True, exist_ok=True)
     steps_picture()
     methods_picture()
