@@ -47,7 +47,6 @@ def integrate_edge(
     r = math.floor(y + ay) if up > 0 else math.ceil(y + ay) - 1
     r_last = math.ceil(y + by) - 1 if up > 0 else math.floor(y + by)
     slope = (bx - ax) / (by - ay)
-    rise = (by - ay) / (bx - ax) if bx != ax else 0.0
     right = 1 if bx > ax else -1
     ua, va = ax, ay
     while True:
@@ -57,11 +56,25 @@ def integrate_edge(
         if 0 <= r < h:
             c = math.floor(x + ua) if right > 0 else math.ceil(x + ua) - 1
             c_last = math.ceil(x + u_end) - 1 if right > 0 else math.floor(x + u_end)
+            if (c - c_last) * right > 0:
+                c_last = c  # straight up along a pixel border
+            steepness = (v_end - va) / (u_end - ua) if c != c_last else 0.0
+            if (c - c_last) * right > 0:  # by rounding, or a vertical edge on a pixel's border
+                c_last = c
+            first = min(max(min(c, c_last), 0), w)
             m0, q0 = mass[r, base], moment[r, base]
-            while True:
-                in_last = c == c_last or (c - c_last) * right > 0
+            g = mass[r, first] - m0
+            if mass[r, min(max(max(c, c_last) + 1, 0), w)] == mass[r, first]:
+                if g != 0.0:  # no ink under the edge: the running sums stay as they are
+                    dv = v_end - va
+                    m += g * dv
+                    mx += (moment[r, first] - q0 - x * g) * dv
+                    my += g * dv * 0.5 * (va + v_end)
+                c = c_last + right
+            while (c - c_last) * right <= 0:
+                in_last = c == c_last
                 ub = u_end if in_last else (c + (right > 0)) - x
-                vb = v_end if in_last else va + (ub - ua) * rise
+                vb = v_end if in_last else va + (ub - ua) * steepness
                 left = min(max(c, 0), w)
                 g = mass[r, left] - m0
                 q = moment[r, left] - q0 - x * g
@@ -83,8 +96,6 @@ def integrate_edge(
                         )
                     )
                 ua, va = ub, vb
-                if in_last:
-                    break
                 c += right
         ua, va = u_end, v_end
         if is_last:

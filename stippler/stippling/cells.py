@@ -171,6 +171,8 @@ class Cells:
         while done and len(which):
             settled[which] = True
             done = self._relax(which, False, new, suspect=suspect, cancel=cancel)
+            if not done:
+                break
             rows = np.flatnonzero((suspect != 0) & ~settled).astype(np.int32)
             suspect[:] = 0
             run_ranges(check_stars, len(rows), rows, self._star, self._n_star, todo, grain=1024)
@@ -184,11 +186,15 @@ class Cells:
         n = self.n
         cell_of_dot, order = np.empty(n, np.int32), np.empty(n, np.int32)
         cell_start = np.empty_like(self._cell_start)
-        run_ranges(
+        done = run_ranges(
             find_grid_cells, n, self.xs, self.ys, self.compartment_of_dot, self.grid.real,
-            self.grid.whole, cell_of_dot, grain=GRAIN,
+            self.grid.whole, cell_of_dot, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
+        if not done:
+            return False
         sort_by_grid_cell(cell_of_dot, cell_start, order)
+        if cancel is not None and cancel():
+            return False
         names = ["fixed", "compartment_of_dot", "order"]
         sorted_rows: dict[str, Any] = {"_cell_start": cell_start}
         if with_stars:

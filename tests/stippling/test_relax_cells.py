@@ -285,3 +285,13 @@ def test_same_bits_for_any_number_of_threads():
     finally:
         pool.set_threads(0)
     assert results[0] == results[1] == results[2]
+
+
+def test_density_under_cells_that_end_on_pixel_borders():
+    values = np.random.default_rng(0).random((4, 8))
+    dots = np.array([[1.0, 2.0], [3.0, 2.0], [6.0, 2.0]])  # cells end at x = 0, 2, 4.5 and 8
+    masses = Relaxation(dots, box(0, 0, 8, 4), density=DensityField(values, 1.0)).cell_masses()
+    columns = values.astype(np.float32).sum(axis=0, dtype=float)
+    want = [columns[:2].sum(), columns[2:4].sum() + columns[4] / 2, columns[5:].sum()]
+    want[2] += columns[4] / 2
+    np.testing.assert_allclose(masses, want, rtol=1e-12)
