@@ -69,6 +69,15 @@ The measure draws discs on a grid as coarse as one sample a pixel of the picture
 the thin gaps between dots of dark parts as wider than they are (at nine tenths, by 0.02 and
 more). The tone is solved for the true union of the discs; the column *exact* is `tone_rmse`
 against that union, sampled finely enough for the difference not to matter.
+
+Pictures that run over the edge of the page score worse than those on a white ground: the
+measure repeats the outermost row of pixels far beyond the page, so that what a few dots do there
+counts many times. Relaxed on the page alone, dots line up half a spacing inside its edge and
+leave that row nearly white; so they are relaxed on a sheet with a bleed and then trimmed.
+
+Sizes follow detail: where a picture changes within a dot's own cell, the dot's size does too.
+Evening sizes out among neighbours (tried, and left out) took `size_noise` of the sandstone from
+0.064 to 0.048 and `detail_rmse` from 0.012 to 0.015.
 """
 
 
