@@ -34,6 +34,7 @@ from stippler.kernels.simd import (
     stack_ints,
     store_lanes,
 )
+from stippler.kernels.sweep import SWEEP_FROM, sweep_rows
 from stippler.kernels.voronoi import (
     OVERFLOW,
     cut_cell,
@@ -233,8 +234,14 @@ def relax_dots(
         ring = ZERO + 1
         while True:
             reach2, n_near = 0.0, ZERO
+            is_swept = is_packed and ring == SWEEP_FROM and free == math.inf
             if is_packed:
-                for s in range(6 if ring == 1 else 4 * ring):
+                if is_swept:
+                    m = sweep_rows(
+                        U, V, N, m, xs, ys, x, y, cell_start, first_cell, ix, iy, nx, ny, gx, gy,
+                        h, slack,
+                    )  # fmt: skip
+                for s in range(ZERO if is_swept else 6 if ring == 1 else 4 * ring):
                     is_first = ring == 1 and s < 3
                     row, first, last = ring_span(
                         ring, s - 3 if ring == 1 and s >= 3 else s, ix, iy, nx, ny
@@ -279,7 +286,7 @@ def relax_dots(
                     break
                 reach2 = reach2_of_cell(cell, m)
             far = seen_distance(x, y, ring, ix, iy, nx, ny, gx, gy, h, slack)
-            is_last = 4.0 * reach2 <= far * far
+            is_last = is_swept or 4.0 * reach2 <= far * far
             if free * free <= reach2 and (is_last or ring > 1):
                 n_near = gather_edges(
                     edge_start, edge_of_slot, ring, ix, iy, nx, ny, first_cell, near, seen, stamp
