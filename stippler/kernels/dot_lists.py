@@ -1,0 +1,150 @@
+"""A grid of linked lists of dots: one dot moves, comes or goes in constant time.
+
+`head` holds the first row of each cell, `links` (rows, 3) the next and previous row and the cell,
+-1 where there is none. `frame` is ``x0, y0, 1 / side, columns, rows`` of the grid; dots outside it
+are kept in its border cells.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.jit import inline, kernel
+
+F8 = NDArray[np.float64]
+I4 = NDArray[np.int32]
+I8 = NDArray[np.int64]
+
+
+@inline
+def _cell_of(v: float, v0: float, inverse: float, n: float) -> int:
+    return int(min(max((v - v0) * inverse, 0.0), n - 1.0))
+
+
+@inline
+def _link(row: int, xy: F8, frame: F8, head: I4, links: I4) -> None:
+    cell = _cell_of(xy[row, 1], frame[1], frame[2], frame[4]) * int(frame[3]) + _cell_of(
+        xy[row, 0], frame[0], frame[2], frame[3]
+    )
+    first = head[cell]
+    links[row, 0], links[row, 1], links[row, 2] = first, -1, cell
+    if first >= 0:
+        links[first, 1] = row
+    head[cell] = row
+
+
+@inline
+def _unlink(row: int, head: I4, links: I4) -> None:
+    after, before, cell = links[row, 0], links[row, 1], links[row, 2]
+    if before >= 0:
+        links[before, 0] = after
+    else:
+        head[cell] = after
+    if after >= 0:
+        links[after, 1] = before
+    links[row, 2] = -1
+
+
+@kernel
+def link_all(xy: F8, frame: F8, head: I4, links: I4) -> None:
+    """Fill empty lists with all dots."""
+    for row in range(len(xy)):
+        _link(row, xy, frame, head, links)
+
+
+@kernel
+def relink(rows: I8, xy: F8, frame: F8, head: I4, links: I4) -> None:
+    """Bring rows up to date: moved, new, or gone (at or beyond the number of dots)."""
+    for row in rows:
+        if links[row, 2] >= 0:
+            _unlink(row, head, links)
+        if row < len(xy):
+            _link(row, xy, frame, head, links)
+
+
+@kernel
+def rows_in_box(
+    x0: float, y0: float, x1: float, y1: float, xy: F8, frame: F8, head: I4, links: I4, out: I8
+) -> int:
+    """Write the rows of the dots in a closed box; return how many, also where `out` is full."""
+    n = 0
+    i0, i1 = (
+        _cell_of(x0, frame[0], frame[2], frame[3]),
+        _cell_of(x1, frame[0], frame[2], frame[3]),
+    )
+    for j in range(
+        _cell_of(y0, frame[1], frame[2], frame[4]), _cell_of(y1, frame[1], frame[2], frame[4]) + 1
+    ):
+        for cell in range(j * int(frame[3]) + i0, j * int(frame[3]) + i1 + 1):
+            row = head[cell]
+            while row >= 0:
+                if x0 <= xy[row, 0] <= x1 and y0 <= xy[row, 1] <= y1:
+                    if n < len(out):
+                        out[n] = row
+                    n += 1
+                row = links[row, 0]
+    return n
+
+
+@kernel
+def nearest_row(x: float, y: float, reach: float, xy: F8, frame: F8, head: I4, links: I4) -> int:
+    """Return the row of the nearest dot within a reach, the lowest of equals; -1 if none."""
+    best, best_d2 = -1, reach * reach
+    i0, i1 = (
+        _cell_of(x - reach, frame[0], frame[2], frame[3]),
+        _cell_of(x + reach, frame[0], frame[2], frame[3]),
+    )
+    j0, j1 = (
+        _cell_of(y - reach, frame[1], frame[2], frame[4]),
+        _cell_of(y + reach, frame[1], frame[2], frame[4]),
+    )
+    for j in range(j0, j1 + 1):
+        for i in range(i0, i1 + 1):
+            row = head[j * int(frame[3]) + i]
+            while row >= 0:
+                d2 = (xy[row, 0] - x) ** 2 + (xy[row, 1] - y) ** 2
+                if d2 < best_d2 or (d2 == best_d2 and (best < 0 or row < best)):
+                    best, best_d2 = row, d2
+                row = links[row, 0]
+    return best
+
+
+@kernel
+def keep_apart(
+    points: F8, distance: float, xy: F8, frame: F8, head: I4, links: I4, kept: NDArray[np.bool_]
+) -> None:
+    """Mark the points that stay clear of all dots and of the points marked before them."""
+    d2 = distance * distance
+    for k in range(len(points)):
+        x, y = points[k, 0], points[k, 1]
+        row = nearest_row(x, y, distance * (1.0 - 1e-12), xy, frame, head, links)
+        kept[k] = row < 0
+        for m in range(k):
+            if kept[m] and (points[m, 0] - x) ** 2 + (points[m, 1] - y) ** 2 < d2:
+                kept[k] = False
+                break
+
+
+@kernel
+def nearest_distances(
+    rows: I8, reach: float, xy: F8, frame: F8, head: I4, links: I4, out: F8
+) -> None:
+    """Write the distance of each row's dot to the nearest other; `reach` where none is nearer."""
+    for k in range(len(rows)):
+        x, y = xy[rows[k], 0], xy[rows[k], 1]
+        best = reach * reach
+        j0 = _cell_of(y - reach, frame[1], frame[2], frame[4])
+        j1 = _cell_of(y + reach, frame[1], frame[2], frame[4])
+        i0 = _cell_of(x - reach, frame[0], frame[2], frame[3])
+        i1 = _cell_of(x + reach, frame[0], frame[2], frame[3])
+        for j in range(j0, j1 + 1):
+            for i in range(i0, i1 + 1):
+                row = head[j * int(frame[3]) + i]
+                while row >= 0:
+                    if row != rows[k]:
+                        best = min(best, (xy[row, 0] - x) ** 2 + (xy[row, 1] - y) ** 2)
+                    row = links[row, 0]
+        out[k] = math.sqrt(best)
