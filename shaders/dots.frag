@@ -1,12 +1,11 @@
 // Coverage of a pixel by a dot, from the distance to its outline in pixels.
 #version 330 core
-#ifdef ROUGH
 #include "lib/dot_shape.glsl"
-#endif
 
-in vec2 v_unit;
-flat in vec2 v_per_axis;
-flat in vec2 v_opacity;
+flat in vec4 v_dot;
+#ifndef ROUND
+flat in vec4 v_to_unit;
+#endif
 #ifdef ROUGH
 flat in vec4 v_rough0, v_rough1, v_rough2, v_rough3;
 #endif
@@ -14,16 +13,25 @@ flat in vec4 v_rough0, v_rough1, v_rough2, v_rough3;
 out vec2 o_ink;
 
 void main() {
-    float t = max(length(v_unit), 1e-6);
-    vec2 direction = v_unit / t;
+    vec2 offset = gl_FragCoord.xy - v_dot.xy;
+#ifdef ROUND
+    float distance_px = length(offset) - v_dot.z;
+    float opacity = v_dot.w;
+#else
+    mat2 to_unit = mat2(v_to_unit.xy, v_to_unit.zw);
+    vec2 unit = to_unit * offset;
+    float t = max(length(unit), 1e-6);
+    vec2 direction = unit / t;
     vec2 gradient = direction;
     float edge = 1.0;
+    float opacity = v_dot.z;
 #ifdef ROUGH
     vec4 c[N_HARMONICS / 2] = vec4[](v_rough0, v_rough1, v_rough2, v_rough3);
     vec2 radius = rough_radius(direction, c);
     edge = radius.x;
     gradient += vec2(direction.y, -direction.x) * (radius.y / radius.x);
 #endif
-    float distance_px = (t - edge) / length(gradient * v_per_axis);
-    o_ink = clamp(0.5 - distance_px, 0.0, 1.0) * v_opacity;
+    float distance_px = (t - edge) / length(gradient * to_unit);
+#endif
+    o_ink = vec2(clamp(0.5 - distance_px, 0.0, 1.0) * opacity);
 }

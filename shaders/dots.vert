@@ -1,55 +1,68 @@
-// Dots as instanced tight quads. Positions in mm from the page's middle; lengths on screen in
-// pixels, y down. Writes coverage, not colour.
+// One dot, as a point sprite (POINTS) or an instanced quad; ROUND, or any ellipse, or ROUGH.
+// Positions in mm from the page's middle, lengths on screen in pixels with y up.
 #version 330 core
-#ifdef ROUGH
 #include "lib/dot_shape.glsl"
-#endif
 #include "lib/deformation.glsl"
+#include "lib/ink.glsl"
 
-uniform mat2 u_page_to_px;   // mm to pixels, a turn, a mirror and a scale
-uniform vec2 u_center_mm;    // the page's point in the middle of the screen
-uniform vec2 u_px_to_clip;   // (2 / width, -2 / height)
+uniform mat2 u_page_to_px;
+uniform vec2 u_center_mm;   // the page's point at u_middle_px
+uniform vec2 u_middle_px;
+uniform vec2 u_px_to_clip;  // 2 / size of the target
 uniform float u_px_per_mm;
+#ifdef POINTS
+uniform float u_largest_mm; // larger ones are drawn as quads
+#endif
 
 in vec3 a_dot;    // x, y, radius; mm
-in uvec3 a_shape; // elongation | angle << 16, roughness | flags << 16, seed
+in uvec3 a_shape; // see unpack_shape
 
-out vec2 v_unit;            // in units of the half axes
-flat out vec2 v_per_axis;   // 1 / half axes, 1/px
-flat out vec2 v_opacity;    // opacity, and the same times how far the dot is below a pixel
+#ifdef ROUND
+flat out vec4 v_dot; // center, radius, opacity
+#else
+flat out vec4 v_dot; // center, opacity, unused
+flat out vec4 v_to_unit; // columns of the matrix from pixels to the unsqueezed shape
+#endif
 #ifdef ROUGH
 flat out vec4 v_rough0, v_rough1, v_rough2, v_rough3;
 #endif
-
-const float MIN_AXIS_PX = 0.6; // narrower dots are widened and paled, so their ink stays the same
 
 void main() {
     Shape shape = unpack_shape(a_shape);
     float radius_mm = a_dot.z;
     deform(a_dot.xy, radius_mm, shape);
-    float radius = radius_mm * u_px_per_mm;
-    vec2 true_axes = radius * vec2(sqrt(shape.elongation), inversesqrt(shape.elongation));
-    vec2 axes = max(true_axes, MIN_AXIS_PX);
-    float opacity = min(true_axes.x * true_axes.y / (axes.x * axes.y), 1.0);
-    // An edge ramp of one pixel adds (a / b + b / a) / 24 to the area a b: take it off.
-    float ratio = axes.x / axes.y;
-    axes *= sqrt(1.0 - (ratio + 1.0 / ratio) / (24.0 * axes.x * axes.y));
-
-    float reach = 1.0;
+    vec2 center = u_page_to_px * (a_dot.xy - u_center_mm) + u_middle_px;
+    float opacity;
+#ifdef ROUND
+    vec2 axes = drawn_axes(radius_mm * u_px_per_mm, 1.0, opacity);
+    vec2 half_size = axes + 0.5;
+    v_dot = vec4(center, axes.x, opacity);
+#else
+    vec2 axes = drawn_axes(radius_mm * u_px_per_mm, shape.elongation, opacity);
+    vec2 along = u_page_to_px * vec2(cos(shape.angle), sin(shape.angle)) / u_px_per_mm;
+    vec2 across = u_page_to_px * vec2(-sin(shape.angle), cos(shape.angle)) / u_px_per_mm;
+    v_dot = vec4(center, opacity, 0.0);
+    vec2 a = along / axes.x, b = across / axes.y;
+    v_to_unit = vec4(a.x, b.x, a.y, b.y);
+    float bulge = 1.0;
 #ifdef ROUGH
     vec4 c[N_HARMONICS / 2];
-    float seen = smoothstep(0.75, 2.0, axes.y); // finer than pixels: not drawn
-    rough_coefficients(shape.seed, shape.roughness * seen, c);
-    v_rough0 = c[0]; v_rough1 = c[1]; v_rough2 = c[2]; v_rough3 = c[3];
-    reach = sqrt(1.0 + shape.roughness * seen * MAX_ROUGH);
+    float seen = shape.roughness * smoothstep(ROUGH_FROM_PX, ROUGH_FULL_PX, axes.y); // finer than pixels: not drawn
+    rough_coefficients(shape.seed, seen, c);
+    v_rough0 = c[0];
+    v_rough1 = c[1];
+    v_rough2 = c[2];
+    v_rough3 = c[3];
+    bulge = sqrt(1.0 + seen * MAX_ROUGH);
 #endif
-    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    vec2 local = corner * (axes * reach + 0.5);
-    vec2 along = vec2(cos(shape.angle), sin(shape.angle));
-    vec2 page = along * local.x + vec2(-along.y, along.x) * local.y;
-    vec2 px = u_page_to_px * (a_dot.xy - u_center_mm + page / u_px_per_mm);
-    gl_Position = vec4(px * u_px_to_clip, 0.0, 1.0);
-    v_unit = local / axes;
-    v_per_axis = 1.0 / axes;
-    v_opacity = vec2(opacity);
+    vec2 half_size = bulge * sqrt(along * along * axes.x * axes.x + across * across * axes.y * axes.y)
+        + 0.5;
+#endif
+#ifdef POINTS
+    gl_PointSize = 2.0 * max(half_size.x, half_size.y) + 0.25;
+    if (a_dot.z > u_largest_mm) center = vec2(-1e6);
+#else
+    center += (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * half_size;
+#endif
+    gl_Position = vec4(center * u_px_to_clip - 1.0, 0.0, 1.0);
 }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from stippler.jobs.worker import Worker
 from stippler.ui.editor import Editor
 from stippler.ui.session import Session
-from stippler.ui.window import Window, wake
+from stippler.ui.window import Window
 from stippler.ui.work import Work
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ class App:
         offscreen: bool = False,
     ) -> None:
         self.window = Window("Stippler", size, offscreen=offscreen)
-        self.worker: Worker[Work] = Worker(wake)
-        self.exporter: Worker[Path] = Worker(wake)
+        self.worker: Worker[Work] = Worker(self.window.wake)
+        self.exporter: Worker[Path] = Worker(self.window.wake)
         self.session = Session(self.worker, self.exporter, plan, tone=tone, width_mm=width_mm)
         native = False if offscreen else None
         self.editor = Editor(self.window, self.session, native_dialogs=native)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 DEFAULT_WIDTH_MM = 148.0  # A5
 
 
+_INTERRUPTED = 130
 COMMANDS = ("edit", "render", "bench", "info")
 
 app = typer.Typer(
@@ -196,6 +197,8 @@ def main() -> None:
         args = ["edit", *args]  # `stippler photo.jpg`
     try:
         status = app(args, prog_name="stippler", standalone_mode=False)
+        if status == _INTERRUPTED:  # typer's word for Ctrl-C
+            raise KeyboardInterrupt
     except TyperException as error:
         status = _fail(error.format_message(), error.exit_code, f"see stippler {args[0]} --help")
     except ParameterError as error:
@@ -203,7 +206,7 @@ def main() -> None:
     except StipplerError as error:
         status = _fail(str(error), 1)
     except (KeyboardInterrupt, typer.Abort):
-        status = _fail("stopped; nothing was written", 130)
+        status = _fail("stopped; nothing was written", _INTERRUPTED)
     except MemoryError:
         status = _fail("not enough memory; ask for fewer dots or a smaller picture", 1)
     except BrokenPipeError:

@@ -1,175 +1,224 @@
-"""Dots: buffers of instances, the ink they add up to, and its laying on the page."""
+"""Dots: small ones as point sprites, large ones as quads, none that the view does not show."""
 
 from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
-from stippler.drawing.dots import Dots
-from stippler.kernels.dot_shape import pack_dots, pack_positions
-from stippler.render.paper import Color, page_matrix
+from stippler.drawing.pens import Preview
+from stippler.kernels import gpu_dots
+from stippler.kernels.dot_shape import MAX_ELONGATION, MAX_ROUGH
+from stippler.render.dot_buffer import DotBuffer, Origin
+from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.shaders import Program
 
-_DOT = 12  # bytes: x, y, radius
-_SHAPE = 12  # bytes: elongation, angle, roughness, flags, seed
+_ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
+_MODES = {"all": 1, "selected": 2, "tip": 3}
 
 
-class DotBuffers:
-    """The dots as the GPU holds them, with room to grow."""
+@dataclass(frozen=True, slots=True)
+class _View:
+    """What decides which dots are drawn, and how."""
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
-        self._room = 0
-        self.n = 0
-        self.dot = ctx.buffer(reserve=_DOT)
-        self.shape = ctx.buffer(reserve=_SHAPE)
-        self.is_rough = False
-
-    def set(self, dots: Dots, origin_mm: tuple[float, float]) -> bool:
-        """Upload all; return whether the buffers are new ones."""
-        n = len(dots)
-        grown = self._grow(n)
-        place, shape = pack_dots(dots, origin_mm)
-        self.dot.orphan()
-        self.shape.orphan()
-        if n:
-            self.dot.write(place)
-            self.shape.write(shape)
-        self.n, self.is_rough = n, bool((dots.roughness > 0).any())
-        return grown
-
-    def set_positions(
-        self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32], origin_mm: tuple
-    ) -> bool:
-        """Upload round dots."""
-        n = len(position_mm)
-        grown = self._grow(n)
-        place = pack_positions(position_mm, radius_mm, origin_mm)
-        self.dot.orphan()
-        self.shape.orphan()
-        if n:
-            self.dot.write(place)
-            self.shape.write(np.zeros((n, 3), np.uint32))
-        self.n, self.is_rough = n, False
-        return grown
-
-    def _grow(self, n: int) -> bool:
-        if n <= self._room:
-            return False
-        self._room = max(1024, 2 ** (n - 1).bit_length())
-        self.release()
-        self.dot = self._ctx.buffer(reserve=self._room * _DOT)
-        self.shape = self._ctx.buffer(reserve=self._room * _SHAPE)
-        return True
-
-    def release(self) -> None:
-        """Free the GL objects."""
-        self.dot.release()
-        self.shape.release()
+    camera: Camera
+    size_px: Size
+    pad: float  # a dot reaches at most so many of its radii
+    largest_mm: float  # radius of the largest point sprite
+    revision: int
 
 
 class DotsPass:
-    """Adds up the coverage of all dots off screen, then inks the page with it."""
+    """Adds up the coverage of all dots in an ink target.
+
+    Blending is additive, so the order of dots does not matter: neither that of the drawing, nor
+    that small ones come before large ones.
+    """
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self.buffers = DotBuffers(ctx)
-        self._programs = {
-            rough: Program(ctx, "dots.vert", "dots.frag", ["ROUGH"] if rough else [])
-            for rough in (False, True)
-        }
-        self._resolve = Program(ctx, "page.vert", "resolve.frag")
-        self._page = ctx.vertex_array(self._resolve.gl, [])
-        self._vertices: dict[bool, moderngl.VertexArray] = {}
-        self._ink: moderngl.Texture | None = None
-        self._target: moderngl.Framebuffer | None = None
-        self._bind()
+        self.buffer = DotBuffer(ctx)
+        self.n_draw_calls = 0
+        self._programs: dict[tuple[str, ...], Program] = {}
+        self._arrays: dict[tuple[str | int, ...], moderngl.VertexArray] = {}
+        self._chosen = [_Chosen(ctx), _Chosen(ctx)]  # small, large
+        self._seen: _View | None = None
+        self._all_small = True
+        span = ctx.info["GL_POINT_SIZE_RANGE"]
+        self._reach_px = min(MARGIN_PX - 2.0, float(span[1]) / 2 - 1.0)
 
-    def _bind(self) -> None:
-        for array in self._vertices.values():
-            array.release()
-        place, shape = self.buffers.dot, self.buffers.shape
-        self._vertices = {
-            rough: self._ctx.vertex_array(
-                program.gl, [(place, "3f4/i", "a_dot"), (shape, "3u4/i", "a_shape")]
-            )
-            for rough, program in self._programs.items()
-        }
-
-    def set(self, dots: Dots, origin_mm: tuple[float, float]) -> None:
-        """Upload all dots."""
-        if self.buffers.set(dots, origin_mm):
-            self._bind()
-
-    def set_positions(self, position_mm, radius_mm, origin_mm) -> None:
-        """Upload round dots."""
-        if self.buffers.set_positions(position_mm, radius_mm, origin_mm):
-            self._bind()
-
-    def gather(self, camera: Camera, size_px: Size, origin_mm: tuple[float, float]) -> None:
-        """Add up the coverage of all dots in the pass's own target."""
-        target = self._sized(size_px)
-        target.use()
-        target.clear()
-        if not self.buffers.n:
+    def draw(
+        self,
+        camera: Camera,
+        size_px: Size,
+        origin_mm: Origin,
+        target: InkTarget,
+        preview: Preview | None,
+    ) -> None:
+        """Gather the ink of all dots seen by a camera."""
+        whole = target.begin(size_px)
+        self.n_draw_calls = 0
+        if self.buffer.n == 0:
             return
-        self._ctx.enable_only(moderngl.BLEND)
-        self._ctx.blend_equation = moderngl.FUNC_ADD
-        self._ctx.blend_func = moderngl.ONE, moderngl.ONE
-        program = self._programs[self.buffers.is_rough]
-        center = [camera.center_mm[i] - origin_mm[i] for i in (0, 1)]
-        program.set(
-            {
-                "u_page_to_px": np.ascontiguousarray(camera.linear().T.astype(np.float32)),
-                "u_center_mm": tuple(center),
-                "u_px_to_clip": (2 / size_px[0], -2 / size_px[1]),
-                "u_px_per_mm": camera.px_per_mm,
-            }
-        )
-        self._vertices[self.buffers.is_rough].render(
-            moderngl.TRIANGLE_STRIP, vertices=4, instances=self.buffers.n
-        )
+        self._choose(camera, size_px, origin_mm, preview)
+        ctx = self._ctx
+        ctx.enable_only(moderngl.BLEND | moderngl.PROGRAM_POINT_SIZE)
+        ctx.blend_equation = moderngl.FUNC_ADD
+        ctx.blend_func = moderngl.ONE, moderngl.ONE
+        kind = self._kind(camera, preview)
+        uniforms = _uniforms(camera, whole, origin_mm) | _preview_uniforms(preview, origin_mm)
+        assert self._seen is not None
+        if self._all_small:
+            self._run((kind, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
+        else:
+            small, large = self._chosen
+            self._run((kind, "POINTS"), small.gl, small.n, uniforms)
+            self._run((kind, "QUADS"), large.gl, large.n, uniforms)
 
-    def lay(self, camera: Camera, size_px: Size, page_mm: tuple[float, float], ink: Color) -> None:
-        """Ink the page in the framebuffer in use with what was gathered."""
-        assert self._ink is not None
-        self._ctx.enable_only(moderngl.BLEND)
-        self._ctx.blend_equation = moderngl.FUNC_ADD
-        self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        self._ctx.clear_samplers(0, 1)
-        self._ink.use(0)
-        self._resolve.set(
-            {
-                "u_page_to_clip": page_matrix(camera, size_px),
-                "u_rect_mm": (0.0, 0.0, *page_mm),
-                "u_ink": 0,
-                "u_ink_color": ink,
-            }
-        )
-        self._page.render(moderngl.TRIANGLE_STRIP, vertices=4)
+    def _choose(
+        self, camera: Camera, size_px: Size, origin_mm: Origin, preview: Preview | None
+    ) -> None:
+        """Decide what to draw, unless the view is the one it was decided for."""
+        buffer = self.buffer
+        change = preview.change if preview else None
+        growth, addend = change.radius if change else (1.0, 0.0)
+        largest = buffer.max_radius_mm * max(growth, 1.0) + max(addend, 0.0)
+        deforms = bool(change and change.deforms)
+        long = MAX_ELONGATION if deforms else buffer.max_elongation
+        pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or deforms)))
+        pad *= largest / buffer.max_radius_mm
+        small_mm = self._reach_px / (camera.px_per_mm * pad)
+        view = _View(camera, size_px, pad, small_mm, buffer.revision)
+        if view == self._seen:
+            return
+        self._seen = view
+        inside = _inside_mm(camera, size_px, origin_mm)
+        shown = _share_shown(inside, origin_mm)
+        self._all_small = buffer.max_radius_mm <= small_mm and shown > 0.5
+        if not self._all_small:
+            for chosen, limits in zip(
+                self._chosen, ((0.0, small_mm), (small_mm, math.inf)), strict=True
+            ):
+                chosen.set(gpu_dots.choose(buffer.rows, inside, pad, limits))
 
-    def _sized(self, size_px: Size) -> moderngl.Framebuffer:
-        if self._target is None or self._target.size != tuple(size_px):
-            self._release_target()
-            self._ink = self._ctx.texture(size_px, 2, dtype="f4")
-            self._ink.filter = moderngl.NEAREST, moderngl.NEAREST
-            self._target = self._ctx.framebuffer([self._ink])
-        return self._target
+    def _kind(self, camera: Camera, preview: Preview | None) -> str:
+        buffer = self.buffer
+        deforms = bool(preview and preview.change.deforms)
+        if buffer.is_round and not deforms:
+            return "ROUND"
+        largest_px = buffer.max_radius_mm * camera.px_per_mm
+        if preview:
+            return "ROUGH"
+        return "ROUGH" if buffer.is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
 
-    def _release_target(self) -> None:
-        if self._target is not None and self._ink is not None:
-            self._target.release()
-            self._ink.release()
-        self._target = self._ink = None
+    def _run(
+        self, defines: tuple[str, ...], data: moderngl.Buffer, n: int, uniforms: dict[str, Any]
+    ) -> None:
+        if n == 0:
+            return
+        program = self._programs.get(defines)
+        if program is None:
+            asked = [d for d in defines if d not in ("SMOOTH", "QUADS")]
+            program = Program(self._ctx, "dots.vert", "dots.frag", asked)
+            self._programs[defines] = program
+        as_points = "POINTS" in defines
+        key = (*defines, data.glo)
+        array = self._arrays.get(key)
+        if array is None:
+            rate = "" if as_points else "/i"
+            content = [(data, f"3f4 3u4{rate}", "a_dot", "a_shape")]
+            array = self._ctx.vertex_array(program.gl, content)
+            self._arrays[key] = array
+        if as_points:
+            assert self._seen is not None
+            uniforms = uniforms | {"u_largest_mm": self._seen.largest_mm}
+        program.set(uniforms)
+        if as_points:
+            array.render(moderngl.POINTS, vertices=n)
+        else:
+            array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=n)
+        self.n_draw_calls += 1
+
+    def forget_buffer(self) -> None:
+        """Let go of everything bound to a GL buffer that is no more."""
+        for array in self._arrays.values():
+            array.release()
+        self._arrays.clear()
 
     def release(self) -> None:
         """Free the GL objects."""
-        self._release_target()
-        for array in self._vertices.values():
-            array.release()
-        self._page.release()
-        for program in (*self._programs.values(), self._resolve):
+        self.forget_buffer()
+        for program in self._programs.values():
             program.release()
-        self.buffers.release()
+        self._programs.clear()
+        for chosen in self._chosen:
+            chosen.gl.release()
+        self.buffer.release()
+
+
+class _Chosen:
+    """A GL buffer with some of the dots."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._room = 256
+        self.gl = ctx.buffer(reserve=self._room * 24)
+        self.n = 0
+
+    def set(self, rows: NDArray[np.uint32]) -> None:
+        self.n = len(rows)
+        if self.n > self._room:
+            self._room = 1 << (self.n - 1).bit_length()
+            self.gl.orphan(self._room * 24)
+        if self.n:
+            self.gl.write(rows)
+
+
+def _inside_mm(
+    camera: Camera, size_px: Size, origin_mm: Origin
+) -> tuple[float, float, float, float]:
+    """Return left, top, right and bottom of what the screen shows, from the origin."""
+    w, h = size_px
+    corners = camera.screen_to_page([(-1, -1), (w + 1, -1), (-1, h + 1), (w + 1, h + 1)], size_px)
+    low, high = corners.min(axis=0) - origin_mm, corners.max(axis=0) - origin_mm
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _share_shown(inside: tuple[float, float, float, float], origin_mm: Origin) -> float:
+    """Return how much of the page the rectangle covers."""
+    share = 1.0
+    for low, high, half in zip(inside[:2], inside[2:], origin_mm, strict=True):
+        share *= max(min(high, half) - max(low, -half), 0.0) / (2 * half)
+    return share
+
+
+def _uniforms(camera: Camera, whole_px: Size, origin_mm: Origin) -> dict[str, Any]:
+    upwards = np.array([[1.0], [-1.0]])
+    matrix = (upwards * camera.linear()).T.astype(np.float32)
+    return {
+        "u_page_to_px": np.ascontiguousarray(matrix),
+        "u_center_mm": tuple(camera.center_mm[i] - origin_mm[i] for i in (0, 1)),
+        "u_middle_px": (whole_px[0] / 2, whole_px[1] / 2),
+        "u_px_to_clip": (2 / whole_px[0], 2 / whole_px[1]),
+        "u_px_per_mm": camera.px_per_mm,
+    }
+
+
+def _preview_uniforms(preview: Preview | None, origin_mm: Origin) -> dict[str, Any]:
+    if preview is None:
+        return {"u_preview": 0}
+    change = preview.change
+    x, y = (preview.center_mm[i] - origin_mm[i] for i in (0, 1))
+    turns = change.angle_rad is not None
+    return {
+        "u_preview": _MODES[preview.which],
+        "u_tip": (x, y, max(preview.radius_mm, 1e-6), preview.hardness),
+        "u_radius": change.radius,
+        "u_form": (*change.elongation, *change.roughness),
+        "u_turn": (float(turns), change.angle_rad or 0.0, change.scatter_rad),
+    }

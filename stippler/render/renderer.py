@@ -11,6 +11,7 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.pens import Preview
 from stippler.drawing.reference import Reference
 from stippler.render.dots import DotsPass
+from stippler.render.ink import InkTarget
 from stippler.render.paper import Color, PaperPass
 from stippler.render.reference import ReferencePass
 
@@ -22,23 +23,30 @@ INK: Color = (0.086, 0.082, 0.094)
 class Renderer:
     """Draws a page, its reference and its dots into any framebuffer of one GL context.
 
-    Everything is uploaded by the `set_` methods; `draw` only draws. Each pass sets all the GL
-    state it needs, so other code may draw into the same context before and after.
+    Everything is uploaded by the `set_` and `update_` methods; `draw` only draws. Each pass sets
+    all the GL state it needs, so other code may draw into the same context before and after.
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._page_mm = (1.0, 1.0)
         self._opacity = 0.0
+        self._preview: Preview | None = None
+        self._selected = np.zeros(0, np.bool_)
         self._paper = PaperPass(ctx)
         self._reference = ReferencePass(ctx)
         self._dots = DotsPass(ctx)
-        self._preview: Preview | None = None
+        self._ink = InkTarget(ctx)
 
     @property
     def n_dots(self) -> int:
         """How many dots are uploaded."""
-        return self._dots.buffers.n
+        return self._dots.buffer.n
+
+    @property
+    def n_draw_calls(self) -> int:
+        """How many draw calls the dots of the last frame took."""
+        return self._dots.n_draw_calls
 
     def set_page(self, width_mm: float, height_mm: float) -> None:
         """Set the size of the paper; call it before `set_dots`."""
@@ -49,21 +57,30 @@ class Renderer:
         self._reference.set(reference)
         self._opacity = float(opacity)
 
-    def set_dots(self, dots: Dots) -> None:
-        """Upload all dots."""
-        self._dots.set(dots, self._origin_mm)
+    def set_dots(self, dots: Dots, selected: NDArray[np.bool_] | None = None) -> None:
+        """Upload all dots, and which of them are selected."""
+        self._bound(self._dots.buffer.set(dots, self._chosen(dots, selected), self._origin_mm))
 
     def set_positions(self, position_mm: ArrayLike, radius_mm: ArrayLike) -> None:
-        """Upload round dots, as a worker hands them back while it is at work."""
-        position: NDArray[np.float64] = np.ascontiguousarray(position_mm, np.float64)
+        """Upload positions and radii, as a worker hands them back while it is at work.
+
+        Dots keep their shapes if there are as many as before; else all are round.
+        """
+        position = np.ascontiguousarray(position_mm, np.float64).reshape(-1, 2)
         radius = np.ascontiguousarray(
             np.broadcast_to(np.asarray(radius_mm, np.float32), (len(position),))
         )
-        self._dots.set_positions(position, radius, self._origin_mm)
+        self._bound(self._dots.buffer.set_positions(position, radius, self._origin_mm))
 
-    def update_dots(self, dots: Dots, rows: NDArray[np.intp]) -> None:
-        """Upload only the given rows, or all where the number of dots has changed."""
-        self._dots.set(dots, self._origin_mm)
+    def update_dots(
+        self, dots: Dots, rows: NDArray[np.intp], selected: NDArray[np.bool_] | None = None
+    ) -> None:
+        """Upload only the given rows; rows past the end of what is uploaded are new dots.
+
+        If the number of dots changed in another way, all are uploaded.
+        """
+        buffer = self._dots.buffer
+        self._bound(buffer.update(dots, rows, self._chosen(dots, selected), self._origin_mm))
 
     def set_preview(self, preview: Preview | None) -> None:
         """Show dots as a brush would leave them; by uniforms only."""
@@ -88,10 +105,9 @@ class Renderer:
         paper, desk, ink : (r, g, b)
             0..1, encoded for display.
         """
-        ctx = self._ctx
-        ctx.wireframe = False
-        self._dots.gather(camera, size_px, self._origin_mm)
-        target = framebuffer or ctx.screen
+        self._ctx.wireframe = False
+        self._dots.draw(camera, size_px, self._origin_mm, self._ink, self._preview)
+        target = framebuffer or self._ctx.screen
         target.use()
         target.scissor = None
         target.viewport = (0, 0, *size_px)
@@ -99,13 +115,24 @@ class Renderer:
         target.clear(*desk, 1.0)
         self._paper.draw(camera, size_px, self._page_mm, paper, desk)
         self._reference.draw(camera, size_px, self._opacity, ink)
-        self._dots.lay(camera, size_px, self._page_mm, ink)
+        self._ink.lay(camera, size_px, self._page_mm, ink)
+
+    def release(self) -> None:
+        """Free every GL object."""
+        for one in (self._dots, self._ink, self._reference, self._paper):
+            one.release()
 
     @property
     def _origin_mm(self) -> tuple[float, float]:
         return (self._page_mm[0] / 2, self._page_mm[1] / 2)
 
-    def release(self) -> None:
-        """Free every GL object."""
-        for one in (self._dots, self._reference, self._paper):
-            one.release()
+    def _chosen(self, dots: Dots, selected: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+        if selected is not None:
+            self._selected = selected
+        elif len(self._selected) != len(dots):
+            self._selected = np.zeros(len(dots), np.bool_)
+        return self._selected
+
+    def _bound(self, is_another: bool) -> None:
+        if is_another:
+            self._dots.forget_buffer()

@@ -32,7 +32,7 @@ class Source:
     path : Path
         The shader; includes are relative to `folder`.
     defines : sequence of str
-        Names to `#define`; each has to occur in the text.
+        Names to `#define`.
     """
 
     def __init__(self, path: Path, folder: Path, defines: Sequence[str] = ()) -> None:
@@ -44,9 +44,6 @@ class Source:
         if version is None:
             raise ShaderError(f"{path}: no #version line")
         body = lines[:version] + lines[version + 1 :]
-        for name in defines:
-            if not any(re.search(rf"\b{name}\b", line) for line in body):
-                raise ShaderError(f"{path}: nothing asks for the define {name}")
         self.text = "\n".join([lines[version], *(f"#define {d} 1" for d in defines), *body, ""])
 
     def _lines(self, path: Path, wanted_by: str) -> list[str]:
@@ -100,6 +97,9 @@ class Program:
         folder = folder or resources.shaders()
         self.name = f"{vertex} + {fragment}"
         sources = [Source(folder / name, folder, defines) for name in (vertex, fragment)]
+        for define in defines:
+            if not any(re.search(rf"def(ined)?\W+{define}\b", s.text) for s in sources):
+                raise ShaderError(f"{self.name}: nothing asks for the define {define}")
         try:
             self.gl = ctx.program(vertex_shader=sources[0].text, fragment_shader=sources[1].text)
         except moderngl.Error as error:

@@ -145,10 +145,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
     points = work.onto_ink(points)
-    radii = work.rule_radii(points)
     yield snapshot("tone", 0, 1, points)
     limits = (work.rule.radius_min, work.rule.radius_max)
-    radii = solve_radii(points, radii, work.darkness, limits)
+    radii = solve_radii(points, work.darkness, limits)
     lack = shortfall(work.darkness, work.rule, work.pixel_mm, len(points), plan.n_dots)
     yield Progress("done", 1, 1, *work.show(points, radii), shortfall=lack)
 

@@ -13,8 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
-from stippler.kernels.coverage import blur_columns, blur_rows, cover
+from stippler.kernels.grid import sort_by_grid_cell
 from stippler.kernels.pool import run_ranges
+from stippler.kernels.tone import (
+    MAX_CORNERS,
+    build_cells,
+    find_room,
+    fit_radii,
+    pass_on,
+    sum_darkness,
+    sum_room,
+)
 
 _COVERAGE = np.array([0.0, 0.8, 0.85, 0.9, 0.95, 0.98, 0.99, 1.0])
 _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
@@ -22,6 +31,9 @@ _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
 for relaxed dots of locally equal size."""
 
 _BINS = 1024
+_ROUNDS = 4  # of passing on ink that a dot cannot lay down
+_ENOUGH = 2e-4  # share of all ink that need not be passed on
+_REACH = 12.0  # mean spacings; a cell reaches no farther from its dot to any side
 
 
 def ink_for(darkness: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -149,57 +161,108 @@ def _scaled(
 
 def solve_radii(
     points: NDArray[np.float64],
-    radii: NDArray[np.float64],
     darkness: NDArray[np.float32],
     size_range: tuple[float, float],
-    rounds: int = 8,
 ) -> NDArray[np.float64]:
-    """Change radii within their range until the blurred union of ink meets the blurred darkness.
+    """Find radii within a range at which the union of the discs meets the darkness.
+
+    Every dot lays down the ink that its Voronoi cell asks for; what its range does not allow is
+    passed on to its neighbours, as far as `_ROUNDS` cells away.
 
     Parameters
     ----------
     points : (n, 2) float64, pixels of `darkness`
-    radii : (n,) float64, pixels
-        First guess; not modified.
+    darkness : (h, w) float32
+    size_range : (min, max), pixels
+
+    Returns
+    -------
+    (n,) float64, pixels
+
+    Notes
+    -----
+    O(n); the same bits for any number of threads.
     """
+    n = len(points)
+    if n == 0:
+        return np.empty(0)
     low, high = size_range
-    r = np.clip(radii, low, high)
-    if not len(r):
-        return r
-    h, w = darkness.shape
-    zoom = min(max(1, math.ceil(3.0 / float(np.median(r)))), max(1, int(16000 / max(h, w))))
-    spacing = math.sqrt(float(darkness.sum(dtype=np.float64)) / len(r))
-    weights = _gaussian(max(0.9 * spacing, 0.5))
-    asked = _blur(darkness, weights)
-    scaled = points * zoom
-    order = np.argsort(scaled[:, 1], kind="stable").astype(np.int64)
-    row_of = np.searchsorted(scaled[order, 1], np.arange(h * zoom + 1)).astype(np.int64)
-    field = np.empty((h * zoom, w * zoom), np.float32)
-    column = np.clip(points[:, 0].astype(np.intp), 0, w - 1)
-    row = np.clip(points[:, 1].astype(np.intp), 0, h - 1)
-    for _ in range(rounds):
-        run_ranges(cover, h * zoom, scaled, r * zoom, order, row_of, field, grain=64)
-        drawn = field.reshape(h, zoom, w, zoom).mean(axis=(1, 3))
-        seen = _blur(drawn, weights)[row, column]
-        gain = asked[row, column] / np.maximum(seen, 1e-3)
-        r = np.clip(r * np.clip(gain, 0.5, 2.0) ** 0.5, low, high)
-    return r
-
-
-def _gaussian(sigma: float) -> NDArray[np.float32]:
-    k = np.arange(math.ceil(3 * sigma) + 1)
-    half = np.exp(-0.5 * (k / sigma) ** 2)
-    weights: NDArray[np.float32] = (half / (half[0] + 2 * half[1:].sum())).astype(np.float32)
-    return weights
-
-
-def _blur(field: NDArray[np.float32], weights: NDArray[np.float32]) -> NDArray[np.float32]:
-    h = field.shape[0]
-    middle = np.empty_like(field)
-    result = np.empty_like(field)
-    run_ranges(blur_rows, h, field, weights, middle, grain=64)
-    run_ranges(blur_columns, h, middle, weights, result, grain=64)
+    order, cell_start, frame = _grid(points, darkness.shape)
+    cells = _Cells(np.ascontiguousarray(points[order]), cell_start, frame, darkness)
+    radii, left = cells.fit(low, high)
+    for _ in range(_ROUNDS):
+        if np.abs(left).sum() <= _ENOUGH * cells.asked.sum():
+            break
+        cells.even_out(low, high, radii, left)
+        radii, left = cells.fit(low, high)
+    result = np.empty(n)
+    result[order] = radii
     return result
+
+
+class _Cells:
+    """The cells of sorted dots, and the ink that each asks for."""
+
+    def __init__(
+        self,
+        xy: NDArray[np.float64],
+        cell_start: NDArray[np.int32],
+        frame: NDArray[np.float64],
+        darkness: NDArray[np.float32],
+    ) -> None:
+        n, (h, w) = len(xy), darkness.shape
+        mass = np.empty((h, w + 1))
+        run_ranges(sum_darkness, h, darkness, mass, grain=64)
+        self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
+        self.beyond = np.empty((n, MAX_CORNERS), np.int32)
+        self.n_corners = np.empty(n, np.uint8)
+        self.asked = np.empty(n)
+        run_ranges(
+            build_cells,
+            n,
+            xy,
+            cell_start,
+            frame,
+            mass,
+            self.corners,
+            self.beyond,
+            self.n_corners,
+            self.asked,
+        )
+
+    def fit(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return radii within a range, and the ink it did not allow."""
+        n = len(self.asked)
+        radii, left = np.empty(n), np.empty(n)
+        run_ranges(fit_radii, n, self.corners, self.n_corners, self.asked, low, high, radii, left)
+        return radii, left
+
+    def even_out(
+        self, low: float, high: float, radii: NDArray[np.float64], left: NDArray[np.float64]
+    ) -> None:
+        """Ask neighbours for the ink that a dot's range does not allow."""
+        n = len(self.asked)
+        room, given, new = np.empty((n, 2)), np.empty(n), np.empty(n)
+        run_ranges(find_room, n, self.corners, self.n_corners, low, high, radii, room)
+        run_ranges(sum_room, n, self.beyond, self.n_corners, left, room, given)
+        run_ranges(pass_on, n, self.beyond, self.n_corners, room, given, self.asked, new)
+        self.asked = new
+
+
+def _grid(
+    points: NDArray[np.float64], shape: tuple[int, ...]
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+    """Sort dots into a uniform grid; return the order, each grid cell's start, and the frame."""
+    n, (h, w) = len(points), shape
+    side = max(math.sqrt(1.4 * h * w / n), max(h, w) / 30_000)
+    columns, rows = max(1, math.ceil(w / side)), max(1, math.ceil(h / side))
+    column = np.minimum((points[:, 0] / side).astype(np.int32), columns - 1)
+    row = np.minimum((points[:, 1] / side).astype(np.int32), rows - 1)
+    cell_start = np.zeros(columns * rows + 1, np.int32)
+    order = np.empty(n, np.int32)
+    sort_by_grid_cell(row * np.int32(columns) + column, cell_start, order)
+    half = _REACH * math.sqrt(h * w / n)
+    return order, cell_start, np.array([w, h, side, columns, rows, half], np.float64)
 
 
 def shortfall(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -52,11 +53,6 @@ _NO_GL = (
 )
 
 
-def wake() -> None:
-    """End the window's wait; may be called from any thread."""
-    glfw.post_empty_event()
-
-
 class Window:
     """One window with its OpenGL context; all methods are for the thread that made it.
 
@@ -73,6 +69,8 @@ class Window:
         self._pointer = (0.0, 0.0)
         self._errors: list[str] = []
         self._title = title
+        # The null platform's waiting does not wait.
+        self._woken = threading.Event() if offscreen else None
         glfw.set_error_callback(lambda _, text: self._errors.append(_decoded(text)))
         self._start(offscreen)
         try:
@@ -194,10 +192,19 @@ class Window:
 
     def wait(self, timeout_s: float) -> None:
         """Let events in; sleep until one comes or the time is over (0 does not sleep)."""
-        if timeout_s > 0:
+        if timeout_s > 0 and self._woken is not None:
+            self._woken.wait(timeout_s)
+            self._woken.clear()
+        elif timeout_s > 0:
             glfw.wait_events_timeout(timeout_s)
+        glfw.poll_events()
+
+    def wake(self) -> None:
+        """End the wait; may be called from any thread."""
+        if self._woken is not None:
+            self._woken.set()
         else:
-            glfw.poll_events()
+            glfw.post_empty_event()
 
     # --- state ------------------------------------------------------------------------------
 

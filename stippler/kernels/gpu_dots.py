@@ -1,0 +1,126 @@
+"""Dots as the GPU takes them: six words each, and which of them a view needs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.dot_shape import MAX_ELONGATION
+from stippler.kernels.jit import inline, kernel
+from stippler.kernels.pool import run_ranges
+
+N_WORDS = 6  # x, y, radius (float32); elongation and angle, roughness and flags, seed (uint32)
+WORD_BYTES = 4
+FIXED, SELECTED = 1, 2
+
+_GRAIN = 16384
+_PER_ELONGATION = 65535.0 / (MAX_ELONGATION - 1.0)
+_PER_TURN = 65536.0
+
+
+@inline
+def _pack_place(row, x, y, radius):  # type: ignore[no-untyped-def]
+    row[0] = x
+    row[1] = y
+    row[2] = radius
+
+
+@inline
+def _pack_shape(row, elongation, angle, roughness, seed, flags):  # type: ignore[no-untyped-def]
+    e = np.uint32((elongation - 1.0) * _PER_ELONGATION + 0.5)
+    turns = angle / (2.0 * math.pi)
+    a = np.uint32(np.int64((turns - math.floor(turns)) * _PER_TURN + 0.5) & 0xFFFF)
+    r = np.uint32(roughness * 65535.0 + 0.5)
+    row[3] = np.uint32(e | np.uint32(a << np.uint32(16)))
+    row[4] = np.uint32(r | np.uint32(np.uint32(flags) << np.uint32(16)))
+    row[5] = seed
+
+
+@kernel
+def _pack(start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, flags, place, shape):  # type: ignore[no-untyped-def] # fmt: skip # noqa: E501
+    for k in range(start, stop):
+        i = rows[k] if rows.shape[0] > 0 else k
+        _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
+        _pack_shape(shape[k], elongation[i], angle[i], roughness[i], seed[i], flags[i])
+
+
+@kernel
+def _pack_places(start, stop, position, radius, x0, y0, place):  # type: ignore[no-untyped-def]
+    for i in range(start, stop):
+        _pack_place(place[i], position[i, 0] - x0, position[i, 1] - y0, radius[i])
+
+
+@kernel
+def _choose(place, left, top, right, bottom, pad, low, high, out):  # type: ignore[no-untyped-def]
+    n = 0
+    for i in range(place.shape[0]):
+        radius = place[i, 2]
+        if low < radius <= high:
+            reach = radius * pad
+            if (
+                left - reach <= place[i, 0] <= right + reach
+                and top - reach <= place[i, 1] <= bottom + reach
+            ):
+                out[n] = i
+                n += 1
+    return n
+
+
+def words(n: int) -> NDArray[np.uint32]:
+    """Return room for n dots."""
+    return np.empty((n, N_WORDS), np.uint32)
+
+
+def pack(
+    dots: Any,
+    origin_mm: tuple[float, float],
+    flags: NDArray[np.uint8],
+    out: NDArray[np.uint32],
+    rows: NDArray[np.int64] | None = None,
+) -> None:
+    """Pack dots, or the given rows of them, into consecutive rows of `out`."""
+    chosen = np.empty(0, np.int64) if rows is None else rows
+    run_ranges(
+        _pack, len(out), chosen, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
+        dots.angle_rad, dots.roughness, dots.seed, flags, out.view(np.float32), out,
+        grain=_GRAIN,
+    )  # fmt: skip
+
+
+def pack_places(
+    position_mm: NDArray[np.float64],
+    radius_mm: NDArray[np.float32],
+    origin_mm: tuple[float, float],
+    out: NDArray[np.uint32],
+) -> None:
+    """Pack positions and radii only."""
+    run_ranges(
+        _pack_places, len(out), position_mm, radius_mm, *origin_mm, out.view(np.float32),
+        grain=_GRAIN,
+    )  # fmt: skip
+
+
+def choose(
+    rows: NDArray[np.uint32],
+    inside_mm: tuple[float, float, float, float],
+    pad: float,
+    radius_mm: tuple[float, float],
+) -> NDArray[np.uint32]:
+    """Return copies of the packed dots that touch a rectangle and have radii in a range.
+
+    Parameters
+    ----------
+    inside_mm : (left, top, right, bottom)
+        From the origin the dots were packed with.
+    pad : float
+        A dot reaches at most so many of its radii.
+    radius_mm : (low, high)
+        Larger than low, at most high.
+    """
+    found = np.empty(len(rows), np.int64)
+    low, high = (np.float32(r) for r in radius_mm)
+    n = _choose(rows.view(np.float32), *inside_mm, pad, low, high, found)
+    return rows[found[:n]]

@@ -1,0 +1,358 @@
+"""Ink within Voronoi cells: how large a dot has to be to lay down what its cell asks for.
+
+A point of the page that any disc covers is covered by the disc of the nearest dot, as long as
+neighbours have about the same size. So the union of all discs is the sum, over the cells, of
+disc ∩ cell; overlaps are counted once and each dot can be solved by itself, exactly.
+
+Dots are sorted by the cells of a uniform grid. Lengths in pixels of the darkness field.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.field import integrate_edge
+from stippler.kernels.jit import inline, kernel
+
+Array = NDArray[Any]
+
+MAX_CORNERS = 16
+"""Corners kept of a cell; a cell with more is rare and is solved as a free disc."""
+
+_ROOM = 64
+
+
+@kernel
+def sum_darkness(start: int, stop: int, darkness: Array, mass: Array) -> None:
+    """Write the running sums of rows ``start..stop``, from 0 to the row's sum."""
+    w = darkness.shape[1]
+    for y in range(start, stop):
+        total = 0.0
+        for x in range(w):
+            mass[y, x] = total
+            total += darkness[y, x]
+        mass[y, w] = total
+
+
+@inline
+def _cut(cell: Array, m: int, a: float, b: float, c: float, number: float) -> int:
+    """Cut away the part of a cell with ``a x + b y > c``; return the corners left.
+
+    Rows of `cell`: x, y, number of the dot beyond the side that starts at the corner; then three
+    rows of scratch, and how far each corner lies beyond the line.
+    """
+    n_out = 0
+    for k in range(m):
+        s = a * cell[0, k] + b * cell[1, k] - c
+        cell[6, k] = s
+        if s > 0.0:
+            n_out += 1
+    if n_out == 0 or n_out == m or m + 2 > cell.shape[1]:
+        return m
+    n = 0
+    for k in range(m):
+        j = k + 1 if k + 1 < m else 0
+        s = cell[6, k]
+        t = cell[6, j]
+        if s <= 0.0:
+            cell[3, n] = cell[0, k]
+            cell[4, n] = cell[1, k]
+            cell[5, n] = cell[2, k]
+            n += 1
+        if (s <= 0.0) != (t <= 0.0):
+            f = s / (s - t)
+            cell[3, n] = cell[0, k] + f * (cell[0, j] - cell[0, k])
+            cell[4, n] = cell[1, k] + f * (cell[1, j] - cell[1, k])
+            cell[5, n] = number if s <= 0.0 else cell[2, k]
+            n += 1
+    for k in range(n):
+        cell[0, k] = cell[3, k]
+        cell[1, k] = cell[4, k]
+        cell[2, k] = cell[5, k]
+    return n
+
+
+@inline
+def _reach2(cell: Array, m: int) -> float:
+    best = 0.0
+    for k in range(m):
+        best = max(best, cell[0, k] * cell[0, k] + cell[1, k] * cell[1, k])
+    return best
+
+
+@inline
+def _cell_of(cell: Array, near: Array, xy: Array, i: int, cell_start: Array, frame: Array) -> int:
+    """Cut the cell of dot i out of its box, ring after ring of the grid; return its corners."""
+    side = frame[2]
+    nx = int(frame[3])
+    ny = int(frame[4])
+    x = xy[i, 0]
+    y = xy[i, 1]
+    ix = min(max(int(x / side), 0), nx - 1)
+    iy = min(max(int(y / side), 0), ny - 1)
+    half = frame[5]
+    x0 = max(-x, -half)
+    y0 = max(-y, -half)
+    x1 = min(frame[0] - x, half)
+    y1 = min(frame[1] - y, half)
+    cell[0, 0], cell[1, 0] = x0, y0
+    cell[0, 1], cell[1, 1] = x1, y0
+    cell[0, 2], cell[1, 2] = x1, y1
+    cell[0, 3], cell[1, 3] = x0, y1
+    for k in range(4):
+        cell[2, k] = -1.0
+    m = 4
+    reach2 = _reach2(cell, m)
+    ring = 1
+    while True:
+        count = 0
+        for row in range(max(iy - ring, 0), min(iy + ring, ny - 1) + 1):
+            whole = ring == 1 or row == iy - ring or row == iy + ring
+            step = 1 if whole else 2 * ring
+            for col in range(ix - ring, ix + ring + 1, step):
+                if col < 0 or col >= nx:
+                    continue
+                k = row * nx + col
+                for j in range(cell_start[k], cell_start[k + 1]):
+                    a = xy[j, 0] - x
+                    b = xy[j, 1] - y
+                    d2 = a * a + b * b
+                    if d2 == 0.0 or d2 >= 4.0 * reach2:
+                        continue
+                    if count == len(near):  # a crowd: no need to sort it
+                        m = _cut(cell, m, a, b, 0.5 * d2, float(j))
+                        reach2 = _reach2(cell, m)
+                        continue
+                    at = count
+                    while at > 0 and near[at - 1, 0] > d2:
+                        near[at, 0] = near[at - 1, 0]
+                        near[at, 1] = near[at - 1, 1]
+                        at -= 1
+                    near[at, 0] = d2
+                    near[at, 1] = j
+                    count += 1
+        for k in range(count):
+            d2 = near[k, 0]
+            if d2 >= 4.0 * reach2:
+                break
+            j = int(near[k, 1])
+            m = _cut(cell, m, xy[j, 0] - x, xy[j, 1] - y, 0.5 * d2, float(j))
+            reach2 = _reach2(cell, m)
+        seen = np.inf
+        if ix - ring > 0:
+            seen = min(seen, x - (ix - ring) * side)
+        if ix + ring < nx - 1:
+            seen = min(seen, (ix + ring + 1) * side - x)
+        if iy - ring > 0:
+            seen = min(seen, y - (iy - ring) * side)
+        if iy + ring < ny - 1:
+            seen = min(seen, (iy + ring + 1) * side - y)
+        if 4.0 * reach2 <= seen * seen:
+            return m
+        ring += 1
+
+
+@kernel
+def build_cells(
+    start: int,
+    stop: int,
+    xy: Array,
+    cell_start: Array,
+    frame: Array,
+    mass: Array,
+    corners: Array,
+    beyond: Array,
+    n_corners: Array,
+    asked: Array,
+) -> None:
+    """Build the cells of dots ``start..stop`` and integrate the darkness over them.
+
+    Parameters
+    ----------
+    xy : (n, 2) float64
+        Sorted by grid cell.
+    frame : (6,) float64
+        Width and height of the page, side of a grid cell, columns and rows of the grid, and half
+        the side of the box that bounds a cell.
+    mass : (h, w + 1) float64
+        Running sums of darkness along rows.
+    corners : (n, `MAX_CORNERS`, 2) float32
+        Of the cells, relative to the dot.
+    beyond : (n, `MAX_CORNERS`) int32
+        The dot beyond the side after each corner, or -1.
+    n_corners : (n,) uint8
+        0 for a cell with too many.
+    asked : (n,) float64
+        Ink that the cell asks for.
+    """
+    cell = np.empty((7, _ROOM))
+    near = np.empty((_ROOM, 2))
+    for i in range(start, stop):
+        x = xy[i, 0]
+        y = xy[i, 1]
+        m = _cell_of(cell, near, xy, i, cell_start, frame)
+        total = 0.0
+        for k in range(m):
+            j = k + 1 if k + 1 < m else 0
+            t, _mx, _my = integrate_edge(
+                mass, mass, x, y, cell[0, k], cell[1, k], cell[0, j], cell[1, j]
+            )
+            total += t
+        asked[i] = max(total, 0.0)
+        n_corners[i] = m if 0 < m <= MAX_CORNERS else 0
+        for k in range(n_corners[i]):
+            corners[i, k, 0] = cell[0, k]
+            corners[i, k, 1] = cell[1, k]
+            beyond[i, k] = int(cell[2, k])
+
+
+@inline
+def disc_in_cell(corners: Array, m: int, r: float) -> tuple[float, float]:
+    """Return the area of a disc around the origin inside a convex cell, and its arc in it."""
+    area = math.pi * r * r
+    arc = 2.0 * math.pi * r
+    for k in range(m):
+        j = k + 1 if k + 1 < m else 0
+        ax = corners[k, 0]
+        ay = corners[k, 1]
+        dx = corners[j, 0] - ax
+        dy = corners[j, 1] - ay
+        d2 = dx * dx + dy * dy
+        if d2 == 0.0:
+            continue
+        cross = ax * dy - ay * dx  # twice the area of the triangle to the dot
+        under = r * r * d2 - cross * cross
+        if under <= 0.0:
+            continue
+        middle = -(ax * dx + ay * dy) / d2
+        half = math.sqrt(under) / d2
+        t0 = max(middle - half, 0.0)
+        t1 = min(middle + half, 1.0)
+        if t0 >= t1:
+            continue
+        px = ax + t0 * dx
+        py = ay + t0 * dy
+        qx = ax + t1 * dx
+        qy = ay + t1 * dy
+        chord = px * qy - py * qx
+        angle = math.atan2(chord, px * qx + py * qy)
+        area -= 0.5 * (r * r * angle - chord)
+        arc -= r * angle
+    return area, arc
+
+
+@kernel
+def fit_radii(
+    start: int,
+    stop: int,
+    corners: Array,
+    n_corners: Array,
+    asked: Array,
+    low: float,
+    high: float,
+    radii: Array,
+    left: Array,
+) -> None:
+    """Solve the radius of each dot for the ink its cell asks for, within ``low..high``.
+
+    `left` gets the ink that the range did not allow: above 0 missing, below 0 too much.
+    """
+    for i in range(start, stop):
+        m = n_corners[i]
+        q = asked[i]
+        r = min(max(math.sqrt(q / math.pi), low), high)
+        a = low
+        b = high
+        area, arc = disc_in_cell(corners[i], m, r)
+        for _ in range(40):
+            if abs(area - q) <= 1e-7 * q:
+                break
+            if area < q:
+                a = r
+            else:
+                b = r
+            if b - a <= 1e-9 * high:
+                break
+            new = r + (q - area) / arc if arc > 0.0 else b
+            if not a < new < b:
+                new = b if new >= b else a
+                if new == r or (new != high and new != low):
+                    new = 0.5 * (a + b)
+            r = new
+            area, arc = disc_in_cell(corners[i], m, r)
+            if (r == low and area >= q) or (r == high and area <= q):
+                break
+        radii[i] = r
+        left[i] = q - area
+
+
+@kernel
+def find_room(
+    start: int,
+    stop: int,
+    corners: Array,
+    n_corners: Array,
+    low: float,
+    high: float,
+    radii: Array,
+    room: Array,
+) -> None:
+    """Write how much less and how much more ink each dot could lay down: ``room[i, 0..1]``."""
+    for i in range(start, stop):
+        area, _arc = disc_in_cell(corners[i], n_corners[i], radii[i])
+        least, _arc = disc_in_cell(corners[i], n_corners[i], low)
+        most, _arc = disc_in_cell(corners[i], n_corners[i], high)
+        room[i, 0] = max(area - least, 0.0)
+        room[i, 1] = max(most - area, 0.0)
+
+
+@kernel
+def sum_room(
+    start: int, stop: int, beyond: Array, n_corners: Array, left: Array, room: Array, given: Array
+) -> None:
+    """Write what share of its room each neighbour of a dot has to give for what the dot has left.
+
+    0 for a dot with nothing left; at most 1 in size.
+    """
+    for i in range(start, stop):
+        given[i] = 0.0
+        q = left[i]
+        if q == 0.0:
+            continue
+        side = 1 if q > 0.0 else 0
+        total = 0.0
+        for k in range(n_corners[i]):
+            j = beyond[i, k]
+            if j >= 0:
+                total += room[j, side]
+        if total > 0.0:
+            given[i] = min(max(q / total, -1.0), 1.0)
+
+
+@kernel
+def pass_on(
+    start: int,
+    stop: int,
+    beyond: Array,
+    n_corners: Array,
+    room: Array,
+    given: Array,
+    asked: Array,
+    new: Array,
+) -> None:
+    """Take over what neighbours could not lay down, and hand on what the dot itself could not."""
+    for i in range(start, stop):
+        q = asked[i]
+        for k in range(n_corners[i]):
+            j = beyond[i, k]
+            if j < 0:
+                continue
+            if given[j] != 0.0:
+                q += given[j] * room[i, 1 if given[j] > 0.0 else 0]
+            if given[i] != 0.0:
+                q -= given[i] * room[j, 1 if given[i] > 0.0 else 0]
+        new[i] = max(q, 0.0)

@@ -1,0 +1,68 @@
+"""The ink that all dots add up to: where it is gathered, and its laying on the page."""
+
+from __future__ import annotations
+
+import moderngl
+
+from stippler.camera import Camera, Size
+from stippler.render.paper import Color, page_matrix
+from stippler.render.shaders import Program
+
+MARGIN_PX = 40
+"""Around the picture, so that sprites whose centre lies outside are drawn too."""
+
+
+class InkTarget:
+    """A picture of coverage, added up in floats; a little larger than the frame."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._program = Program(ctx, "page.vert", "resolve.frag")
+        self._vertices = ctx.vertex_array(self._program.gl, [])
+        self._texture: moderngl.Texture | None = None
+        self._framebuffer: moderngl.Framebuffer | None = None
+
+    def begin(self, size_px: Size) -> Size:
+        """Clear the target for a frame of this size, put it in use, and return its own size."""
+        whole = (size_px[0] + 2 * MARGIN_PX, size_px[1] + 2 * MARGIN_PX)
+        if self._framebuffer is None or self._framebuffer.size != whole:
+            self._release_target()
+            self._texture = self._ctx.texture(whole, 2, dtype="f4")
+            self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
+            self._framebuffer = self._ctx.framebuffer([self._texture])
+        self._framebuffer.use()
+        self._framebuffer.scissor = None
+        self._framebuffer.color_mask = True, True, True, True
+        self._framebuffer.clear()
+        return whole
+
+    def lay(self, camera: Camera, size_px: Size, page_mm: tuple[float, float], ink: Color) -> None:
+        """Ink the page in the framebuffer in use."""
+        assert self._texture is not None
+        self._ctx.enable_only(moderngl.BLEND)
+        self._ctx.blend_equation = moderngl.FUNC_ADD
+        self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        self._ctx.clear_samplers(0, 1)
+        self._texture.use(0)
+        self._program.set(
+            {
+                "u_page_to_clip": page_matrix(camera, size_px),
+                "u_rect_mm": (0.0, 0.0, *page_mm),
+                "u_ink": 0,
+                "u_margin_px": MARGIN_PX,
+                "u_ink_color": ink,
+            }
+        )
+        self._vertices.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+    def _release_target(self) -> None:
+        if self._framebuffer is not None and self._texture is not None:
+            self._framebuffer.release()
+            self._texture.release()
+        self._framebuffer = self._texture = None
+
+    def release(self) -> None:
+        """Free the GL objects."""
+        self._release_target()
+        self._vertices.release()
+        self._program.release()
