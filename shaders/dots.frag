@@ -1,4 +1,4 @@
-// Coverage of a pixel by a dot, from the distance to its outline in pixels.
+// Coverage of a pixel by a dot, from the distance to its outline in pixels; with MARKS as colour.
 #version 330 core
 #include "lib/dot_shape.glsl"
 
@@ -10,7 +10,12 @@ flat in vec4 v_to_unit;
 flat in vec4 v_rough0, v_rough1, v_rough2, v_rough3;
 #endif
 
-out vec2 o_ink;
+#ifdef MARKS
+flat in vec3 v_color;
+out vec4 o_color;
+#else
+out float o_ink;
+#endif
 
 void main() {
     vec2 offset = gl_FragCoord.xy - v_dot.xy;
@@ -33,5 +38,10 @@ void main() {
 #endif
     float distance_px = (t - edge) / length(gradient * to_unit);
 #endif
-    o_ink = vec2(clamp(0.5 - distance_px, 0.0, 1.0) * opacity);
+    float ink = clamp(0.5 - distance_px, 0.0, 1.0) * opacity;
+#ifdef MARKS
+    o_color = vec4(v_color, ink);
+#else
+    o_ink = ink;
+#endif
 }

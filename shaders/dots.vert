@@ -1,5 +1,6 @@
 // One dot, as a point sprite (POINTS) or an instanced quad; ROUND, or any ellipse, or ROUGH.
-// Positions in mm from the page's middle, lengths on screen in pixels with y up.
+// With MARKS only fixed and selected
+// dots. Positions in mm from the page's middle, lengths on screen in pixels with y up.
 #version 330 core
 #include "lib/dot_shape.glsl"
 #include "lib/deformation.glsl"
@@ -12,6 +13,12 @@ uniform vec2 u_px_to_clip;  // 2 / size of the target
 uniform float u_px_per_mm;
 #ifdef POINTS
 uniform float u_largest_mm; // larger ones are drawn as quads
+#endif
+
+#ifdef MARKS
+uniform vec3 u_fixed_color;
+uniform vec3 u_selected_color;
+flat out vec3 v_color;
 #endif
 
 in vec3 a_dot;    // x, y, radius; mm
@@ -63,6 +70,11 @@ void main() {
     if (a_dot.z > u_largest_mm) center = vec2(-1e6);
 #else
     center += (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * half_size;
+#endif
+#ifdef MARKS
+    bool is_selected = (shape.flags & FLAG_SELECTED) != 0u;
+    v_color = is_selected ? u_selected_color : u_fixed_color;
+    if (shape.flags == 0u) center = vec2(-1e6);
 #endif
     gl_Position = vec4(center * u_px_to_clip - 1.0, 0.0, 1.0);
 }

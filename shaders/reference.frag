@@ -5,10 +5,14 @@ uniform sampler2D u_darkness;
 uniform vec2 u_size_mm;
 uniform float u_opacity;
 uniform vec3 u_ink_color;
+uniform float u_px_per_mm;
 
 in vec2 v_page_mm;
 out vec4 o_color;
 
 void main() {
-    o_color = vec4(u_ink_color, texture(u_darkness, v_page_mm / u_size_mm).r * u_opacity);
+    vec2 inside = min(v_page_mm, u_size_mm - v_page_mm) * u_px_per_mm;
+    float edge = clamp(min(inside.x, inside.y) + 0.5, 0.0, 1.0);
+    float darkness = texture(u_darkness, v_page_mm / u_size_mm).r;
+    o_color = vec4(u_ink_color, darkness * u_opacity * edge);
 }

@@ -90,7 +90,9 @@ def _strips(
         renderer.set_dots(drawing.dots)
         for top in range(0, size[1], rows):
             camera = whole.tile((0, top), (size[0], rows), size)
-            renderer.draw(camera, (size[0], rows), target, paper=paper, desk=paper, ink=ink)
+            renderer.draw(
+                camera, (size[0], rows), target, paper=paper, desk=paper, ink=ink, marks=None
+            )
             pixels = np.frombuffer(target.read(components=3, alignment=1), np.uint8)
             yield pixels.reshape(rows, size[0], 3)[::-1][: size[1] - top]
     finally:

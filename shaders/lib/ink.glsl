@@ -1,4 +1,4 @@
-// How a dot is drawn at a scale: its half axes in pixels and its opacity, so that its ink is kept.
+// How dots add up to ink, at any scale.
 
 const float MIN_AXIS_PX = 0.6; // narrower dots are widened and paled
 const float ROUGH_FROM_PX = 1.0, ROUGH_FULL_PX = 2.5; // short half axis; below, outlines are smooth
@@ -14,4 +14,14 @@ vec2 drawn_axes(float radius_px, float elongation, out float opacity) {
     // whole turn that makes pi / 24 * (a / b + b / a) more than the area pi a b.
     float ratio = axes.x / axes.y;
     return axes * sqrt(1.0 - (ratio + 1.0 / ratio) / (24.0 * area));
+}
+
+// Returns the share of a pixel that dots cover which have `sum` pixels of area in it.
+// Dots do not overlap until they must, so that is the sum; in the dark, relaxed dots overlap as
+// the curve says, which was fitted to drawings (docs/rendering.md). Where pixels are smaller than
+// dots (crowding 0), cutting off at 1 is the union.
+float covered(float sum, float crowding) {
+    float over = max(sum - 0.57, 0.0);
+    float overlapping = sum < 1.17 ? min(sum - 0.7 * over * over * over, 1.0) : 1.0;
+    return mix(min(sum, 1.0), overlapping, crowding);
 }

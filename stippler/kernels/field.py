@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import inline, kernel
+from stippler.kernels.jit import kernel
 
 F8 = NDArray[np.float64]
 

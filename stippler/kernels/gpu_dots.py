@@ -42,15 +42,32 @@ def _pack_shape(row, elongation, angle, roughness, seed, flags):  # type: ignore
 @kernel
 def _pack(start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, flags, place, shape):  # type: ignore[no-untyped-def] # fmt: skip # noqa: E501
     for k in range(start, stop):
-        i = rows[k] if rows.shape[0] > 0 else k
+        i = rows[k]
         _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
         _pack_shape(shape[k], elongation[i], angle[i], roughness[i], seed[i], flags[i])
 
 
 @kernel
-def _pack_places(start, stop, position, radius, x0, y0, place):  # type: ignore[no-untyped-def]
+def _pack_places(start, stop, rows, position, radius, x0, y0, place):  # type: ignore[no-untyped-def]
+    for k in range(start, stop):
+        i = rows[k]
+        _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
+
+
+@inline
+def _spread(x):  # type: ignore[no-untyped-def]
+    """Put a 0 between the bits of a number below 256."""
+    x = (x | (x << 4)) & 0x0F0F
+    x = (x | (x << 2)) & 0x3333
+    return (x | (x << 1)) & 0x5555
+
+
+@kernel
+def _morton(start, stop, position, per_x, per_y, out):  # type: ignore[no-untyped-def]
     for i in range(start, stop):
-        _pack_place(place[i], position[i, 0] - x0, position[i, 1] - y0, radius[i])
+        x = min(max(int(position[i, 0] * per_x), 0), 255)
+        y = min(max(int(position[i, 1] * per_y), 0), 255)
+        out[i] = _spread(x) | (_spread(y) << 1)
 
 
 @kernel
@@ -74,17 +91,29 @@ def words(n: int) -> NDArray[np.uint32]:
     return np.empty((n, N_WORDS), np.uint32)
 
 
+def nearby_order(
+    position_mm: NDArray[np.float64], size_mm: tuple[float, float]
+) -> NDArray[np.int64]:
+    """Return an order of dots in which neighbours on the page mostly stand close together.
+
+    Rasterising is twice as fast on a CPU, and what a brush touches is uploaded in few pieces.
+    """
+    keys = np.empty(len(position_mm), np.uint16)
+    per_x, per_y = (256.0 / side for side in size_mm)
+    run_ranges(_morton, len(keys), position_mm, per_x, per_y, keys, grain=_GRAIN)
+    return np.argsort(keys, kind="stable")  # a radix sort for 16 bits
+
+
 def pack(
     dots: Any,
     origin_mm: tuple[float, float],
     flags: NDArray[np.uint8],
+    rows: NDArray[np.int64],
     out: NDArray[np.uint32],
-    rows: NDArray[np.int64] | None = None,
 ) -> None:
-    """Pack dots, or the given rows of them, into consecutive rows of `out`."""
-    chosen = np.empty(0, np.int64) if rows is None else rows
+    """Pack the given rows of dots into consecutive rows of `out`; `flags` are of all dots."""
     run_ranges(
-        _pack, len(out), chosen, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
+        _pack, len(out), rows, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
         dots.angle_rad, dots.roughness, dots.seed, flags, out.view(np.float32), out,
         grain=_GRAIN,
     )  # fmt: skip
@@ -94,11 +123,12 @@ def pack_places(
     position_mm: NDArray[np.float64],
     radius_mm: NDArray[np.float32],
     origin_mm: tuple[float, float],
+    rows: NDArray[np.int64],
     out: NDArray[np.uint32],
 ) -> None:
-    """Pack positions and radii only."""
+    """Pack only positions and radii of the given rows into consecutive rows of `out`."""
     run_ranges(
-        _pack_places, len(out), position_mm, radius_mm, *origin_mm, out.view(np.float32),
+        _pack_places, len(out), rows, position_mm, radius_mm, *origin_mm, out.view(np.float32),
         grain=_GRAIN,
     )  # fmt: skip
 

@@ -24,13 +24,20 @@ def column_of(v: float, v0: float, inverse: float, n: int) -> int:
 
 @kernel
 def find_grid_cells(
-    start: int, stop: int, xy: F8, compartment_of_dot: I4, grid_real: F8, grid_int: I4, out: I4
+    start: int,
+    stop: int,
+    xs: F8,
+    ys: F8,
+    compartment_of_dot: I4,
+    grid_real: F8,
+    grid_int: I4,
+    out: I4,
 ) -> None:
     """Write the grid cell of each dot."""
     for i in range(start, stop):
         c = compartment_of_dot[i]
-        ix = column_of(xy[i, 0], grid_real[c, 0], grid_real[c, 3], grid_int[c, 0])
-        iy = column_of(xy[i, 1], grid_real[c, 1], grid_real[c, 3], grid_int[c, 1])
+        ix = column_of(xs[i], grid_real[c, 0], grid_real[c, 3], grid_int[c, 0])
+        iy = column_of(ys[i], grid_real[c, 1], grid_real[c, 3], grid_int[c, 1])
         out[i] = grid_int[c, 2] + iy * grid_int[c, 0] + ix
 
 

@@ -8,6 +8,7 @@ can reach it.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,68 +17,70 @@ from stippler.kernels.clip import outline_piece
 from stippler.kernels.field import integrate_edge
 from stippler.kernels.grid import column_of
 from stippler.kernels.jit import inline, kernel
-from stippler.kernels.voronoi import OVERFLOW, cut_cell, reach2_of_cell, start_cell
+from stippler.kernels.simd import (
+    LANES,
+    get,
+    moments_of,
+    put,
+    reach2_of,
+    stack_doubles,
+    stack_ints,
+    store_lanes,
+)
+from stippler.kernels.voronoi import (
+    OVERFLOW,
+    cut_cell,
+    cut_lanes_by_run,
+    reach2_of_cell,
+    start_cell,
+    start_lanes,
+    unpack_lanes,
+)
 
 F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
+U1 = NDArray[np.uint8]
 
-DONE, TOO_MANY_CORNERS = 0, 1
+INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
+"""What a cell is: bounded by dots alone; by a border as well; not computed."""
 
-
-@inline
-def _cut_by_run(cell: F8, m: int, xy: F8, i: int, first: int, end: int, reach2: float):
-    """Cut the cell by the dots first..end; return (corners, reach2)."""
-    x, y = xy[i, 0], xy[i, 1]
-    for j in range(first, end):
-        a, b = xy[j, 0] - x, xy[j, 1] - y
-        d2 = a * a + b * b
-        if d2 >= 4.0 * reach2 or d2 == 0.0:
-            continue
-        n = cut_cell(cell, m, a, b, 0.5 * d2, j)
-        if n == OVERFLOW:
-            return OVERFLOW, reach2
-        m = n
-        reach2 = reach2_of_cell(cell, m)
-    return m, reach2
-
-
-@kernel
-def _cut_by_ring(
-    cell: F8,
-    m: int,
-    xy: F8,
-    cell_start: I4,
-    i: int,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    first_cell: int,
-    reach2: float,
-):
-    """Cut by the dots of the grid cells at Chebyshev distance `ring`."""
-    x0, x1 = max(ix - ring, 0), min(ix + ring, nx - 1)
-    for j in range(max(iy - ring, 0), min(iy + ring, ny - 1) + 1):
-        row = first_cell + j * nx
-        if j == iy - ring or j == iy + ring:
-            m, reach2 = _cut_by_run(
-                cell, m, xy, i, cell_start[row + x0], cell_start[row + x1 + 1], reach2
-            )
-        else:
-            for k in (ix - ring, ix + ring):
-                if 0 <= k < nx and m > 0:
-                    m, reach2 = _cut_by_run(
-                        cell, m, xy, i, cell_start[row + k], cell_start[row + k + 1], reach2
-                    )
-        if m < 0:
-            break
-    return m, reach2
+_ROOM = 3 * LANES
 
 
 @inline
-def _seen_distance(
-    x: float, y: float, ring: int, ix: int, iy: int, nx: int, ny: int, grid: F8
+def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
+    """Return row and first and last column of the s-th run of grid cells of a ring.
+
+    Ring 1 includes the dot's own cell. A run off the grid has its last column before its first.
+    """
+    if ring == 1:
+        row = iy if s == 0 else iy - 1 if s == 1 else iy + 1
+        first, last = ix - 1, ix + 1
+    elif s < 2:
+        row = iy - ring if s == 0 else iy + ring
+        first, last = ix - ring, ix + ring
+    else:
+        row = iy - ring + 1 + ((s - 2) >> 1)
+        first = last = ix + ring if s & 1 else ix - ring
+    if row < 0 or row >= ny:
+        return 0, 0, -1
+    return row, max(first, 0), min(last, nx - 1)
+
+
+@inline
+def _distance2_to_span(
+    x: float, y: float, row: int, first: int, last: int, grid: F8, slack: float
+) -> float:
+    """Return the squared distance to the nearest place a dot of these grid cells can be."""
+    x0, y0, h = grid[0], grid[1], grid[2]
+    dx = max(max(x0 + first * h - x, x - (x0 + (last + 1) * h)) - slack, 0.0)
+    dy = max(max(y0 + row * h - y, y - (y0 + (row + 1) * h)) - slack, 0.0)
+    return (dx * dx + dy * dy) * (1.0 - 1e-9)
+
+
+@inline
+def seen_distance(
+    x: float, y: float, ring: int, ix: int, iy: int, nx: int, ny: int, grid: F8, slack: float
 ) -> float:
     """Return the distance within which all dots of the compartment are in rings up to `ring`."""
     best = math.inf
@@ -89,7 +92,42 @@ def _seen_distance(
         best = min(best, y - (grid[1] + (iy - ring) * grid[2]))
     if iy + ring < ny - 1:
         best = min(best, grid[1] + (iy + ring + 1) * grid[2] - y)
-    return best * (1.0 - 1e-9)
+    return max(best * (1.0 - 1e-9) - slack, 0.0)
+
+
+@kernel
+def _cut_cell_by_ring(
+    cell: F8,
+    m: int,
+    xs: F8,
+    ys: F8,
+    cell_start: I4,
+    x: float,
+    y: float,
+    ring: int,
+    ix: int,
+    iy: int,
+    nx: int,
+    ny: int,
+    first_cell: int,
+) -> int:
+    """Cut a cell in plain arrays by the dots of a ring of grid cells."""
+    reach2 = reach2_of_cell(cell, m)
+    for s in range(3 if ring == 1 else 4 * ring):
+        row, first, last = ring_span(ring, s, ix, iy, nx, ny)
+        if last < first:
+            continue
+        start = first_cell + row * nx
+        for j in range(cell_start[start + first], cell_start[start + last + 1]):
+            a, b = xs[j] - x, ys[j] - y
+            d2 = a * a + b * b
+            if d2 >= 4.0 * reach2 or d2 == 0.0:
+                continue
+            m = cut_cell(cell, m, a, b, 0.5 * d2, j)
+            if m == OVERFLOW:
+                return m
+            reach2 = reach2_of_cell(cell, m)
+    return m
 
 
 @inline
@@ -118,89 +156,6 @@ def _gather_edges(
                 near[n] = e
                 n += 1
     return n
-
-
-@inline
-def _reach2_of_outline(out: F8, n: int) -> float:
-    best = 0.0
-    for s in range(n):
-        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
-        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
-    return best
-
-
-@inline
-def _outline_of_cell(cell: F8, m: int, out: F8) -> int:
-    for k in range(m):
-        n = k + 1 if k + 1 < m else 0
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
-    return m
-
-
-@inline
-def _sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
-    """Return area, both first moments and the second moment about the dot."""
-    area = mu = mv = second = 0.0
-    for s in range(n):
-        au, av, bu, bv = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
-        cross = au * bv - bu * av
-        area += cross
-        mu += cross * (au + bu)
-        mv += cross * (av + bv)
-        second += cross * (au * au + au * bu + bu * bu + av * av + av * bv + bv * bv)
-    return 0.5 * area, mu / 6.0, mv / 6.0, second / 12.0
-
-
-@kernel
-def _sum_field(
-    out: F8, n: int, x: float, y: float, mass: F8, moment: F8, frame: F8
-) -> tuple[float, float, float]:
-    """Return the field's mass over the outline and its first moments about the dot."""
-    ku, kv = 1.0 / frame[2], 1.0 / frame[3]
-    px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
-    total = mu = mv = 0.0
-    for s in range(n):
-        m, mx, my = integrate_edge(
-            mass, moment, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
-        )
-        total += m
-        mu += mx
-        mv += my
-    size = frame[2] * frame[3]
-    return total * size, mu * size * frame[2], mv * size * frame[3]
-
-
-@inline
-def _free_share(out: F8, n_border: int, du: float, dv: float, margin: float) -> float:
-    """Return the share of the move (du, dv) that stays clear of the border segments.
-
-    1 if the straight way ends well inside; else half of the way to the first border met; 0 if
-    even that comes nearer to it than `margin`.
-    """
-    share = 1.0
-    for s in range(n_border):
-        au, av = out[s, 0], out[s, 1]
-        eu, ev = out[s, 2] - au, out[s, 3] - av
-        length = math.sqrt(eu * eu + ev * ev)
-        if length == 0.0:
-            continue
-        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
-        after = before + (eu * dv - ev * du) / length
-        if after >= margin or after >= before:
-            continue
-        t = max((before - margin) / (before - after), 0.0)
-        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
-        if -margin <= along <= length + margin:
-            share = min(share, 0.5 * t)
-    return share
-
-
-@inline
-def _is_in_cell(cell: F8, m: int, u: float, v: float) -> bool:
-    for k in range(m):
-        if cell[2, k] * u + cell[3, k] * v > cell[4, k]:
-            return False
-    return True
 
 
 @kernel
@@ -265,7 +220,113 @@ def _outline_within(
         out,
         1e-24 * reach2,
     )
-    return n_border, n, _reach2_of_outline(out, n)
+    best = 0.0
+    for s in range(n):
+        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
+        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
+    return n_border, n, best
+
+
+@inline
+def _outline_of_cell(cell: F8, m: int, out: F8) -> int:
+    for k in range(m):
+        n = k + 1 if k + 1 < m else 0
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
+    return m
+
+
+@inline
+def _sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
+    """Return area, both first moments and the second moment about the dot."""
+    area = mu = mv = second = 0.0
+    for s in range(n):
+        au, av, bu, bv = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
+        cross = au * bv - bu * av
+        area += cross
+        mu += cross * (au + bu)
+        mv += cross * (av + bv)
+        second += cross * (au * au + au * bu + bu * bu + av * av + av * bv + bv * bv)
+    return 0.5 * area, mu / 6.0, mv / 6.0, second / 12.0
+
+
+@kernel
+def sum_field(
+    out: F8, n: int, x: float, y: float, mass: F8, moment: F8, frame: F8
+) -> tuple[float, float, float]:
+    """Return the field's mass over the outline and its first moments about the dot."""
+    ku, kv = 1.0 / frame[2], 1.0 / frame[3]
+    px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
+    total = mu = mv = 0.0
+    for s in range(n):
+        m, mx, my = integrate_edge(
+            mass, moment, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
+        )
+        total += m
+        mu += mx
+        mv += my
+    size = frame[2] * frame[3]
+    return total * size, mu * size * frame[2], mv * size * frame[3]
+
+
+@inline
+def _free_share(out: F8, n_border: int, du: float, dv: float, margin: float) -> float:
+    """Return the share of the move (du, dv) that stays clear of the border segments.
+
+    1 if the straight way ends well inside; else half of the way to the first border met; 0 if
+    even that comes nearer to it than `margin`.
+    """
+    share = 1.0
+    for s in range(n_border):
+        au, av = out[s, 0], out[s, 1]
+        eu, ev = out[s, 2] - au, out[s, 3] - av
+        length = math.sqrt(eu * eu + ev * ev)
+        if length == 0.0:
+            continue
+        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
+        after = before + (eu * dv - ev * du) / length
+        if after >= margin or after >= before:
+            continue
+        t = max((before - margin) / (before - after), 0.0)
+        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
+        if -margin <= along <= length + margin:
+            share = min(share, 0.5 * t)
+    return share
+
+
+@inline
+def is_in_cell(N: Any, m: int, xs: F8, ys: F8, x: float, y: float, u: float, v: float) -> bool:
+    """Whether a place is nearer to the dot than to the dots beyond its sides."""
+    for k in range(m):
+        j = get(N, k)
+        if j >= 0:
+            a, b = xs[j] - x, ys[j] - y
+            if a * u + b * v > 0.5 * (a * a + b * b):
+                return False
+    return True
+
+
+@inline
+def _mark_if_changed(N: Any, m: int, i: int, star: I4, n_star: U1, suspect: U1) -> None:
+    """Mark a dot's old and new neighbours if its ring of neighbours has changed."""
+    before = n_star[i]
+    same = before == m
+    if same:
+        turn = 0
+        while turn < m and star[i, turn] != get(N, 0):
+            turn += 1
+        for k in range(m):
+            w = k + turn if k + turn < m else k + turn - m
+            if turn == m or star[i, w] != get(N, k):
+                same = False
+                break
+    if same:
+        return
+    for k in range(before):
+        if star[i, k] >= 0:
+            suspect[star[i, k]] = 1
+    for k in range(m):
+        if get(N, k) >= 0:
+            suspect[get(N, k)] = 1
 
 
 @kernel
@@ -273,9 +334,13 @@ def relax_dots(
     start: int,
     stop: int,
     which: I4,
-    xy: F8,
+    is_all: bool,
+    xs: F8,
+    ys: F8,
+    fixed: NDArray[np.bool_],
     compartment_of_dot: I4,
     cell_start: I4,
+    slack: float,
     grid_real: F8,
     grid_int: I4,
     edges: F8,
@@ -289,15 +354,26 @@ def relax_dots(
     corner_cap: int,
     most_edges: int,
     over: float,
-    new_xy: F8,
+    new_x: F8,
+    new_y: F8,
+    gone: F8,
     cells: F8,
-    status: NDArray[np.uint8],
+    kind_of_cell: U1,
+    star: I4,
+    n_star: U1,
+    suspect: U1,
 ) -> None:
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
     Parameters
     ----------
-    which : rows of `xy`
+    which, is_all
+        Rows of the dots' arrays; if `is_all` the rows are start..stop themselves and fixed dots
+        are only carried over.
+    xs, ys
+        Positions, with `simd.SCAN` numbers of padding.
+    slack
+        How far a dot may have gone from the grid cell it is listed in.
     mass, moment, frame
         Running sums of the density (see `field`) and its origin and pixel sides;
         an empty `mass` means uniform density.
@@ -305,10 +381,22 @@ def relax_dots(
         Room for the corners of a cell and the border edges of a compartment.
     over
         Over-relaxation, 1 for plain Lloyd.
-    new_xy, cells, status
-        Results, by row of `xy`: position; mass, centroid relative to the dot, second moment
-        of area; `DONE` or `TOO_MANY_CORNERS`.
+    new_x, new_y, gone
+        Results, by row: position, distance moved.
+    cells
+        Result, by row, unless empty: mass, centroid relative to the dot, second moment of area.
+    kind_of_cell
+        Result, by row: `INNER`, `RIM` or `TOO_MANY_CORNERS`.
+    star, n_star
+        Result, by row, unless empty: the dots around each dot, counter-clockwise.
+    suspect
+        Unless empty, set to 1 for the old and new neighbours of dots whose star changes.
     """
+    U, V, N = stack_doubles(_ROOM), stack_doubles(_ROOM), stack_ints(_ROOM)
+    for k in range(_ROOM):
+        put(U, k, 0.0)
+        put(V, k, 0.0)
+        put(N, k, np.int32(0))
     cell, cell2 = np.empty((7, corner_cap)), np.empty((7, corner_cap + 4))
     room = most_edges + 1
     near = np.empty(room, np.int32)
@@ -318,34 +406,70 @@ def relax_dots(
     out = np.empty((2 * room + 3 * corner_cap + 8, 4))
     stamp = 0
     for w in range(start, stop):
-        i = which[w]
-        x, y = xy[i, 0], xy[i, 1]
-        grid = grid_real[compartment_of_dot[i]]
-        nx, ny, first_cell, kind = grid_int[compartment_of_dot[i]]
+        i = w if is_all else which[w]
+        x, y = xs[i], ys[i]
+        if is_all and fixed[i] and len(star) == 0:
+            new_x[i], new_y[i], gone[i] = x, y, 0.0
+            continue
+        c = compartment_of_dot[i]
+        grid = grid_real[c]
+        nx, ny, first_cell = grid_int[c, 0], grid_int[c, 1], grid_int[c, 2]
         ix = column_of(x, grid[0], grid[3], nx)
         iy = column_of(y, grid[1], grid[3], ny)
-        m = start_cell(cell, grid[4] - x, grid[5] - y, grid[6] - x, grid[7] - y)
-        reach2 = reach2_of_cell(cell, m)
+        x0, y0, x1, y1 = grid[4] - x, grid[5] - y, grid[6] - x, grid[7] - y
         free = math.inf
-        if kind == 1:
+        if grid_int[c, 3] == 1:
             free = max(clear[first_cell + iy * nx + ix] - 1, 0) * grid[2]
-        n_border = n = 0
+        is_packed = True
         is_outlined = False
-        ring = 0
+        n_border = n = 0
+        m = start_lanes(U, V, N, x0, y0, x1, y1)
+        ring = 1
         while True:
-            m, reach2 = _cut_by_ring(
-                cell, m, xy, cell_start, i, ring, ix, iy, nx, ny, first_cell, reach2
-            )
-            if m < 0:
-                break
-            if ring == 0:
-                ring = 1
-                continue
-            far = _seen_distance(x, y, ring, ix, iy, nx, ny, grid)
-            if 4.0 * reach2 <= far * far:
-                break
-            if free * free <= reach2 and far < math.inf:
+            reach2 = 0.0
+            if is_packed:
+                for s in range(3 if ring == 1 else 4 * ring):
+                    row, first, last = ring_span(ring, s, ix, iy, nx, ny)
+                    if last < first:
+                        continue
+                    reach2 = reach2_of(U, V, m)
+                    if _distance2_to_span(x, y, row, first, last, grid, slack) >= 4.0 * reach2:
+                        continue
+                    a = first_cell + row * nx
+                    m = cut_lanes_by_run(
+                        U,
+                        V,
+                        N,
+                        m,
+                        xs,
+                        ys,
+                        x,
+                        y,
+                        cell_start[a + first],
+                        cell_start[a + last + 1],
+                        reach2,
+                    )
+                    if m == OVERFLOW:
+                        break
+                if m == OVERFLOW:
+                    is_packed = False
+                    m = start_cell(cell, x0, y0, x1, y1)
+                    ring = 1
+                    continue
+                reach2 = reach2_of(U, V, m)
+            else:
+                m = _cut_cell_by_ring(
+                    cell, m, xs, ys, cell_start, x, y, ring, ix, iy, nx, ny, first_cell
+                )
+                if m == OVERFLOW:
+                    break
+                reach2 = reach2_of_cell(cell, m)
+            far = seen_distance(x, y, ring, ix, iy, nx, ny, grid, slack)
+            is_last = 4.0 * reach2 <= far * far
+            if free * free <= reach2:
                 # the cell may lean out of the compartment: only its piece counts
+                if is_packed:
+                    unpack_lanes(U, V, N, m, xs, ys, x, y, x0, y0, x1, y1, cell)
                 n_border, n, r2 = _outline_within(
                     cell,
                     cell2,
@@ -371,58 +495,54 @@ def relax_dots(
                     out,
                 )
                 stamp += 2
-                if 4.0 * r2 <= far * far:
-                    is_outlined = True
-                    break
+                is_outlined = True
+                is_last = is_last or 4.0 * r2 <= far * far
+            if is_last:
+                break
+            is_outlined = False
             ring += 1
-        new_xy[i, 0], new_xy[i, 1] = x, y
-        cells[i, 0] = cells[i, 1] = cells[i, 2] = cells[i, 3] = 0.0
-        if m < 0:
-            status[i] = TOO_MANY_CORNERS
+        new_x[i], new_y[i], gone[i] = x, y, 0.0
+        if m == OVERFLOW:
+            kind_of_cell[i] = TOO_MANY_CORNERS
             continue
-        status[i] = DONE
-        if not is_outlined and free * free <= reach2:
-            n_border, n, _ = _outline_within(
-                cell,
-                cell2,
-                m,
-                x,
-                y,
-                ring,
-                ix,
-                iy,
-                nx,
-                ny,
-                first_cell,
-                grid,
-                edges,
-                next_edge,
-                edge_start,
-                edge_of_slot,
-                near,
-                seen,
-                stamp,
-                chains,
-                trace,
-                out,
-            )
-            stamp += 2
-        elif not is_outlined:
-            n_border, n = 0, _outline_of_cell(cell, m, out)
-        area, du, dv, second = _sum_area(out, n)
-        cells[i, 3] = second
-        if len(mass):
-            area, du, dv = _sum_field(out, n, x, y, mass, moment, frame)
-        cells[i, 0] = area
-        if not area > 0.0:
+        is_rim = is_outlined or not is_packed
+        for k in range(m):
+            is_rim = is_rim or get(N, k) < 0
+        kind_of_cell[i] = RIM if is_rim else INNER
+        if len(star):
+            if len(suspect):
+                _mark_if_changed(N, m if is_packed else 0, i, star, n_star, suspect)
+            n_star[i] = m if is_packed else 0
+            if is_packed:
+                store_lanes(N, star, i)
+        if is_all and fixed[i]:
             continue
-        du, dv = du / area, dv / area
-        cells[i, 1], cells[i, 2] = du, dv
-        if over != 1.0 and _is_in_cell(cell, m, over * du, over * dv):
+        second = 0.0
+        if is_packed and not is_outlined and len(mass) == 0 and len(cells) == 0:
+            area, du, dv = moments_of(U, V, m)
+            area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+        else:
+            if not is_outlined:
+                if is_packed:
+                    unpack_lanes(U, V, N, m, xs, ys, x, y, x0, y0, x1, y1, cell)
+                n_border, n = 0, _outline_of_cell(cell, m, out)
+            area, du, dv, second = _sum_area(out, n)
+            if len(mass):
+                area, du, dv = sum_field(out, n, x, y, mass, moment, frame)
+        if area > 0.0:
+            du, dv = du / area, dv / area
+        else:
+            area = du = dv = 0.0
+        if len(cells):
+            cells[i, 0], cells[i, 1], cells[i, 2], cells[i, 3] = area, du, dv, second
+        if over < 1.0 or (
+            over > 1.0 and is_packed and is_in_cell(N, m, xs, ys, x, y, over * du, over * dv)
+        ):
             du, dv = over * du, over * dv
         if n_border:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
             share = _free_share(out, n_border, du, dv, margin)
             du, dv = share * du, share * dv
-        new_xy[i, 0] = min(max(x + du, grid[4]), grid[6])
-        new_xy[i, 1] = min(max(y + dv, grid[5]), grid[7])
+        new_x[i] = min(max(x + du, grid[4]), grid[6])
+        new_y[i] = min(max(y + dv, grid[5]), grid[7])
+        gone[i] = math.sqrt(du * du + dv * dv)

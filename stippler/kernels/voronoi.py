@@ -1,17 +1,33 @@
 """Convex Voronoi cells, cut bisector by bisector out of the compartment's box.
 
+Nearly all cells fit into vector lanes (see `simd`): pointers to corners U, V and to the numbers N
+of the dots beyond each side, side k running from corner k to corner k + 1. Sides of the box have
+the numbers `WALL` and below. A cell with more corners is cut in plain arrays, as follows.
+
 A cell is kept relative to its dot: corners ``u[k], v[k]`` counter-clockwise (x right, y up), and
 for the side from corner k to corner k + 1 the line ``a x + b y = c`` it lies on, dot inside, with
-the number of the dot beyond (-1 for a side of the box). `Cell` rows: u, v, a, b, c, number, and
+the number of the dot beyond (as in lanes). `Cell` rows: u, v, a, b, c, number, and
 one row of scratch.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.jit import inline, kernel
+from stippler.kernels.simd import (
+    LANES,
+    SCAN,
+    get,
+    lowest_bit,
+    near_mask,
+    out_mask,
+    put,
+    roll,
+)
 
 F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
@@ -20,6 +36,96 @@ TOLERANCE = 1e-14
 """A corner that a bisector passes closer than this share of its distance is not cut."""
 
 OVERFLOW = -1
+"""Number of corners of a cell that has more than there is room for."""
+
+WALL = -1
+"""Sides of the box are numbered -1 (least y), -2 (most x), -3 (most y) and -4 (least x)."""
+
+
+@inline
+def start_lanes(U: Any, V: Any, N: Any, x0: float, y0: float, x1: float, y1: float) -> int:
+    """Make the cell in lanes a box around the origin; return its number of corners."""
+    for k in range(0, 8, 4):
+        put(U, k, x0)
+        put(U, k + 1, x1)
+        put(U, k + 2, x1)
+        put(U, k + 3, x0)
+        put(V, k, y0)
+        put(V, k + 1, y0)
+        put(V, k + 2, y1)
+        put(V, k + 3, y1)
+        for side in range(4):
+            put(N, k + side, np.int32(WALL - side))
+    return 4
+
+
+@inline
+def _cut_lanes(
+    U: Any, V: Any, N: Any, m: int, a: float, b: float, c: float, number: int, mask: int
+) -> int:
+    """Cut away the corners in `mask`, those with ``a u + b v > c``; return the corners left.
+
+    Positions count on from m around the end, which is what the second copy of the corners is for.
+    """
+    all_corners = (1 << m) - 1
+    z = lowest_bit(~mask)
+    turned = ((mask >> z) | (mask << (m - z))) & all_corners
+    p = lowest_bit(turned)
+    n_out = lowest_bit(~(turned >> p))
+    p += z  # first corner out
+    q = p + n_out  # first corner in again
+    s_p = a * get(U, p - 1) + b * get(V, p - 1) - c
+    s_out = a * get(U, p) + b * get(V, p) - c
+    t = s_p / (s_p - s_out)
+    s_q = a * get(U, q) + b * get(V, q) - c
+    s_out = a * get(U, q - 1) + b * get(V, q - 1) - c
+    r = s_q / (s_q - s_out)
+    kept = m - n_out
+    last = get(N, q - 1)
+    u, v = get(U, p - 1), get(V, p - 1)
+    du, dv = get(U, q), get(V, q)
+    roll(U, q, kept, u + t * (get(U, p) - u), du + r * (get(U, q - 1) - du))
+    roll(V, q, kept, v + t * (get(V, p) - v), dv + r * (get(V, q - 1) - dv))
+    roll(N, q, kept, np.int32(number), last)
+    return kept + 2
+
+
+@inline
+def cut_lanes_by_run(
+    U: Any,
+    V: Any,
+    N: Any,
+    m: int,
+    xs: F8,
+    ys: F8,
+    x: float,
+    y: float,
+    first: int,
+    end: int,
+    reach2: float,
+) -> int:
+    """Cut the cell of (x, y) by the dots first..end; return its corners, or `OVERFLOW`.
+
+    Dots further than twice the cell's reach cannot cut it.
+    """
+    limit = 4.0 * reach2
+    j = first
+    while j < end:
+        near = near_mask(xs, ys, j, x, y, limit)
+        if end - j < SCAN:
+            near &= (1 << (end - j)) - 1
+        while near != 0:
+            k = j + lowest_bit(near)
+            near &= near - 1
+            a, b = xs[k] - x, ys[k] - y
+            c = 0.5 * (a * a + b * b)
+            mask = out_mask(U, V, a, b, c * (1.0 + TOLERANCE)) & ((1 << m) - 1)
+            if mask != 0:
+                if m + 2 > LANES:
+                    return OVERFLOW
+                m = _cut_lanes(U, V, N, m, a, b, c, k, mask)
+        j += SCAN
+    return m
 
 
 @inline
@@ -34,8 +140,42 @@ def start_cell(cell: F8, x0: float, y0: float, x1: float, y1: float) -> int:
     cell[2, 2], cell[3, 2], cell[4, 2] = 0.0, 1.0, y1
     cell[2, 3], cell[3, 3], cell[4, 3] = -1.0, 0.0, -x0
     for k in range(4):
-        cell[5, k] = -1.0
+        cell[5, k] = WALL - k
     return 4
+
+
+@inline
+def unpack_lanes(
+    U: Any,
+    V: Any,
+    N: Any,
+    m: int,
+    xs: F8,
+    ys: F8,
+    x: float,
+    y: float,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    cell: F8,
+) -> None:
+    """Copy a cell from lanes into a plain array, with the lines its sides lie on."""
+    for k in range(m):
+        cell[0, k], cell[1, k] = get(U, k), get(V, k)
+        j = get(N, k)
+        cell[5, k] = j
+        if j == -1:
+            cell[2, k], cell[3, k], cell[4, k] = 0.0, -1.0, -y0
+        elif j == -2:
+            cell[2, k], cell[3, k], cell[4, k] = 1.0, 0.0, x1
+        elif j == -3:
+            cell[2, k], cell[3, k], cell[4, k] = 0.0, 1.0, y1
+        elif j == -4:
+            cell[2, k], cell[3, k], cell[4, k] = -1.0, 0.0, -x0
+        else:
+            a, b = xs[j] - x, ys[j] - y
+            cell[2, k], cell[3, k], cell[4, k] = a, b, 0.5 * (a * a + b * b)
 
 
 @kernel

@@ -24,11 +24,13 @@ class DotBuffer:
         Dots in it.
     revision : int
         Counts changes.
-    is_round, is_rough : bool
-        Whether all are round and smooth; whether any is rough. After partial updates they may
-        be wrong towards the costlier side.
+    is_round, is_rough, has_flags : bool
+        Whether all are round and smooth; any is rough; any is fixed or selected. After partial
+        updates they may be wrong towards the costlier side.
     max_radius_mm, max_elongation : float
         At least as large as any dot's.
+    mean_radius_mm : float
+        Of all dots weighted by their areas, as of the last full upload.
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -37,6 +39,8 @@ class DotBuffer:
         self._words = gpu_dots.words(self._room)
         self.gl = ctx.buffer(reserve=self._room * _STRIDE)
         self.n = self.revision = 0
+        self.mean_radius_mm = 0.0
+        self._row_of_slot = self._slot_of_row = np.empty(0, np.int64)
         self._forget()
 
     @property
@@ -47,9 +51,13 @@ class DotBuffer:
     def set(self, dots: Dots, selected: NDArray[np.bool_], origin_mm: Origin) -> bool:
         """Upload all dots; return whether the GL buffer is another one now."""
         grown = self._resize(len(dots))
-        gpu_dots.pack(dots, origin_mm, _flags(dots.fixed, selected), self.rows)
+        self._order(dots.position_mm, origin_mm)
+        flags = _flags(dots.fixed, selected)
+        gpu_dots.pack(dots, origin_mm, flags, self._row_of_slot, self.rows)
         self._forget()
+        self.has_flags = bool(flags.any())
         self._learn(dots.radius_mm, dots.elongation, dots.roughness)
+        self.mean_radius_mm = _weighted_mean(dots.radius_mm)
         self._upload()
         return grown
 
@@ -59,11 +67,14 @@ class DotBuffer:
         """Upload positions and radii; shapes stay if there are as many dots as before."""
         same = len(position_mm) == self.n
         grown = self._resize(len(position_mm))
-        gpu_dots.pack_places(position_mm, radius_mm, origin_mm, self.rows)
         if not same:
+            self._order(position_mm, origin_mm)
             self.rows[:, 3:] = 0
             self._forget()
+        rows = self._row_of_slot
+        gpu_dots.pack_places(position_mm, radius_mm, origin_mm, rows, self.rows)
         self.max_radius_mm = float(radius_mm.max(initial=0.0))
+        self.mean_radius_mm = _weighted_mean(radius_mm)
         self._upload()
         return grown
 
@@ -75,22 +86,37 @@ class DotBuffer:
         origin_mm: Origin,
     ) -> bool:
         """Upload some rows, which include all new ones; return as `set` does."""
-        rows = np.unique(rows)
         n_new = len(dots) - self.n
-        has_new = n_new >= 0 and np.count_nonzero(rows >= self.n) == n_new
+        has_new = n_new >= 0 and np.count_nonzero(np.unique(rows[rows >= self.n])) == n_new
         if not has_new or len(dots) > self._room or len(rows) > len(dots) // 4:
             return self.set(dots, selected, origin_mm)
         if len(rows) == 0:
             return False
-        self.n = len(dots)
-        fresh = gpu_dots.words(len(rows))
-        flags = _flags(dots.fixed[rows], selected[rows])
-        some = dots.take(rows)
-        gpu_dots.pack(some, origin_mm, flags, fresh)
-        self._words[rows] = fresh
-        self._learn(some.radius_mm, some.elongation, some.roughness)
-        self._upload_runs(rows)
+        self._append(n_new)
+        slots = np.sort(self._slot_of_row[rows])
+        changed = self._row_of_slot[slots]
+        fresh = gpu_dots.words(len(slots))
+        flags = _flags(dots.fixed, selected)
+        gpu_dots.pack(dots, origin_mm, flags, changed, fresh)
+        self.has_flags = self.has_flags or bool(flags[rows].any())
+        self._words[slots] = fresh
+        self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
+        self._upload_runs(slots)
         return False
+
+    def _order(self, position_mm: NDArray[np.float64], origin_mm: Origin) -> None:
+        size_mm = (2 * origin_mm[0], 2 * origin_mm[1])
+        self._row_of_slot = gpu_dots.nearby_order(position_mm, size_mm)
+        self._slot_of_row = np.empty_like(self._row_of_slot)
+        self._slot_of_row[self._row_of_slot] = np.arange(self.n)
+
+    def _append(self, n_new: int) -> None:
+        """Give new dots the slots after the last."""
+        if n_new:
+            new = np.arange(self.n, self.n + n_new)
+            self._row_of_slot = np.concatenate([self._row_of_slot, new])
+            self._slot_of_row = np.concatenate([self._slot_of_row, new])
+            self.n += n_new
 
     def _upload(self) -> None:
         self.revision += 1
@@ -98,11 +124,11 @@ class DotBuffer:
         if self.n:
             self.gl.write(self.rows)
 
-    def _upload_runs(self, rows: NDArray[np.intp]) -> None:
+    def _upload_runs(self, slots: NDArray[np.intp]) -> None:
         self.revision += 1
-        breaks = np.flatnonzero(np.diff(rows) > _GAP)
-        first = rows[np.concatenate([[0], breaks + 1])].tolist()
-        last = rows[np.concatenate([breaks, [len(rows) - 1]])].tolist()
+        breaks = np.flatnonzero(np.diff(slots) > _GAP)
+        first = slots[np.concatenate([[0], breaks + 1])].tolist()
+        last = slots[np.concatenate([breaks, [len(slots) - 1]])].tolist()
         memory = memoryview(self._words).cast("B")
         for a, b in zip(first, last, strict=True):
             self.gl.write(memory[a * _STRIDE : (b + 1) * _STRIDE], a * _STRIDE)
@@ -118,7 +144,7 @@ class DotBuffer:
         return True
 
     def _forget(self) -> None:
-        self.is_round, self.is_rough = True, False
+        self.is_round, self.is_rough, self.has_flags = True, False, False
         self.max_radius_mm, self.max_elongation = 0.0, 1.0
 
     def _learn(
@@ -135,6 +161,12 @@ class DotBuffer:
     def release(self) -> None:
         """Free the GL buffer."""
         self.gl.release()
+
+
+def _weighted_mean(radius: NDArray[np.float32]) -> float:
+    area = np.square(radius)
+    total = float(area.sum(dtype=np.float64))
+    return float(np.dot(area, radius)) / total if total else 0.0
 
 
 def _flags(fixed: NDArray[np.bool_], selected: NDArray[np.bool_]) -> NDArray[np.uint8]:

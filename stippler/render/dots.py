@@ -16,6 +16,7 @@ from stippler.kernels import gpu_dots
 from stippler.kernels.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.ink import MARGIN_PX, InkTarget
+from stippler.render.paper import Color
 from stippler.render.shaders import Program
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
@@ -66,19 +67,37 @@ class DotsPass:
         if self.buffer.n == 0:
             return
         self._choose(camera, size_px, origin_mm, preview)
-        ctx = self._ctx
-        ctx.enable_only(moderngl.BLEND | moderngl.PROGRAM_POINT_SIZE)
-        ctx.blend_equation = moderngl.FUNC_ADD
-        ctx.blend_func = moderngl.ONE, moderngl.ONE
-        kind = self._kind(camera, preview)
+        self._ctx.enable_only(moderngl.BLEND | moderngl.PROGRAM_POINT_SIZE)
+        self._ctx.blend_equation = moderngl.FUNC_ADD
+        self._ctx.blend_func = moderngl.ONE, moderngl.ONE
         uniforms = _uniforms(camera, whole, origin_mm) | _preview_uniforms(preview, origin_mm)
-        assert self._seen is not None
+        self._run_chosen((self._kind(camera, preview),), uniforms)
+
+    def draw_marks(
+        self,
+        camera: Camera,
+        size_px: Size,
+        origin_mm: Origin,
+        preview: Preview | None,
+        colors: tuple[Color, Color],
+    ) -> None:
+        """Colour the fixed and the selected dots in the framebuffer in use, after `draw`."""
+        if not self.buffer.has_flags or self.buffer.n == 0:
+            return
+        self._ctx.enable_only(moderngl.BLEND | moderngl.PROGRAM_POINT_SIZE)
+        self._ctx.blend_equation = moderngl.FUNC_ADD
+        self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        uniforms = _uniforms(camera, size_px, origin_mm) | _preview_uniforms(preview, origin_mm)
+        uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
+        self._run_chosen((self._kind(camera, preview), "MARKS"), uniforms)
+
+    def _run_chosen(self, defines: tuple[str, ...], uniforms: dict[str, Any]) -> None:
         if self._all_small:
-            self._run((kind, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
-        else:
-            small, large = self._chosen
-            self._run((kind, "POINTS"), small.gl, small.n, uniforms)
-            self._run((kind, "QUADS"), large.gl, large.n, uniforms)
+            self._run((*defines, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
+            return
+        small, large = self._chosen
+        self._run((*defines, "POINTS"), small.gl, small.n, uniforms)
+        self._run((*defines, "QUADS"), large.gl, large.n, uniforms)
 
     def _choose(
         self, camera: Camera, size_px: Size, origin_mm: Origin, preview: Preview | None

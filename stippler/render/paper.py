@@ -4,52 +4,70 @@ from __future__ import annotations
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.render.shaders import Program
 
 Color = tuple[float, float, float]
 
+SHADOW_PX = 14.0
+SHADE = 0.80  # of the desk's colour, where the shadow is deepest
 
-def page_matrix(camera: Camera, size_px: Size) -> np.ndarray:
+
+def page_matrix(camera: Camera, size_px: Size) -> NDArray[np.float32]:
     """Return the camera's matrix as GL stores it, column after column."""
     return np.ascontiguousarray(camera.matrix(size_px).T)
 
 
 class PaperPass:
-    """Clears to the desk and lays the paper on it."""
+    """Lays the paper on the desk, with a soft shadow."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._program = Program(ctx, "page.vert", "paper.frag")
+        self._program = Program(ctx, "paper.vert", "paper.frag")
         self._vertices = ctx.vertex_array(self._program.gl, [])
 
     def draw(
-        self, camera: Camera, size_px: Size, page_mm: tuple[float, float], paper: Color, desk: Color
+        self,
+        camera: Camera,
+        size_px: Size,
+        page_mm: tuple[float, float],
+        colors: tuple[Color, Color],
+        *,
+        edge_only: bool,
     ) -> None:
-        """Draw into the framebuffer in use, which is already cleared to the desk."""
+        """Draw into the framebuffer in use, which is already cleared to the desk.
+
+        Parameters
+        ----------
+        colors : (paper, desk)
+        edge_only : bool
+            Leave out the middle, which another pass is going to cover.
+        """
+        paper, desk = colors
         ctx = self._ctx
         ctx.enable_only(moderngl.BLEND)
         ctx.blend_equation = moderngl.FUNC_ADD
         ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        margin = SHADOW_PX / camera.px_per_mm
-        shade = tuple(0.82 * c for c in desk)
+        w, h = page_mm
+        out, inset = SHADOW_PX / camera.px_per_mm, 2.0 / camera.px_per_mm
+        has_middle = not edge_only or min(w, h) <= 2 * inset
+        inner = (w / 2, h / 2, w / 2, h / 2) if has_middle else (inset, inset, w - inset, h - inset)
         self._program.set(
             {
                 "u_page_to_clip": page_matrix(camera, size_px),
-                "u_rect_mm": (-margin, -margin, page_mm[0] + margin, page_mm[1] + margin),
+                "u_outer_mm": (-out, -out, w + out, h + out),
+                "u_inner_mm": inner,
                 "u_page_mm": page_mm,
                 "u_px_per_mm": camera.px_per_mm,
                 "u_paper_color": paper,
-                "u_shadow": (*shade, SHADOW_PX),
+                "u_shadow": (*(SHADE * c for c in desk), SHADOW_PX),
             }
         )
-        self._vertices.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        self._vertices.render(moderngl.TRIANGLE_STRIP, vertices=10)
 
     def release(self) -> None:
         """Free the GL objects."""
         self._vertices.release()
         self._program.release()
-
-
-SHADOW_PX = 12.0

@@ -23,6 +23,11 @@ class ReferencePass:
         self._shown: Reference | None = None
         self._size_mm = (1.0, 1.0)
 
+    @property
+    def is_set(self) -> bool:
+        """Whether there is one to show."""
+        return self._texture is not None
+
     def set(self, reference: Reference | None) -> None:
         """Show another reference; uploads only if it is another one."""
         if reference is self._shown:
@@ -44,8 +49,7 @@ class ReferencePass:
 
     def draw(self, camera: Camera, size_px: Size, opacity: float, ink: Color) -> None:
         """Draw into the framebuffer in use."""
-        if self._texture is None or opacity <= 0:
-            return
+        assert self._texture is not None
         ctx = self._ctx
         ctx.enable_only(moderngl.BLEND)
         ctx.blend_equation = moderngl.FUNC_ADD
@@ -58,6 +62,7 @@ class ReferencePass:
                 "u_rect_mm": (0.0, 0.0, *self._size_mm),
                 "u_size_mm": self._size_mm,
                 "u_darkness": 0,
+                "u_px_per_mm": camera.px_per_mm,
                 "u_opacity": min(opacity, 1.0),
                 "u_ink_color": ink,
             }

@@ -6,18 +6,21 @@ import moderngl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stippler.camera import Camera, Size
+from stippler.camera import Camera, Point, Size
 from stippler.drawing.dots import Dots
 from stippler.drawing.pens import Preview
 from stippler.drawing.reference import Reference
 from stippler.render.dots import DotsPass
 from stippler.render.ink import InkTarget
+from stippler.render.overlay import OverlayPass
 from stippler.render.paper import Color, PaperPass
 from stippler.render.reference import ReferencePass
 
 PAPER: Color = (0.984, 0.980, 0.965)
 DESK: Color = (0.827, 0.816, 0.792)
 INK: Color = (0.086, 0.082, 0.094)
+FIXED: Color = (0.72, 0.30, 0.12)
+SELECTED: Color = (0.10, 0.42, 0.80)
 
 
 class Renderer:
@@ -37,6 +40,8 @@ class Renderer:
         self._reference = ReferencePass(ctx)
         self._dots = DotsPass(ctx)
         self._ink = InkTarget(ctx)
+        self._overlay = OverlayPass(ctx)
+        self._tip: tuple[Point, float] | None = None
 
     @property
     def n_dots(self) -> int:
@@ -86,6 +91,10 @@ class Renderer:
         """Show dots as a brush would leave them; by uniforms only."""
         self._preview = preview
 
+    def set_tip(self, center_mm: Point | None, radius_mm: float = 0.0) -> None:
+        """Show the outline of a brush over the drawing, or none."""
+        self._tip = None if center_mm is None else (center_mm, radius_mm)
+
     def draw(
         self,
         camera: Camera,
@@ -95,6 +104,7 @@ class Renderer:
         paper: Color = PAPER,
         desk: Color = DESK,
         ink: Color = INK,
+        marks: tuple[Color, Color] | None = (FIXED, SELECTED),
     ) -> None:
         """Draw one frame.
 
@@ -104,6 +114,8 @@ class Renderer:
             The context's screen if not given; left in use.
         paper, desk, ink : (r, g, b)
             0..1, encoded for display.
+        marks : (colour, colour) or None
+            Of fixed and of selected dots; None draws them like all others.
         """
         self._ctx.wireframe = False
         self._dots.draw(camera, size_px, self._origin_mm, self._ink, self._preview)
@@ -113,14 +125,26 @@ class Renderer:
         target.viewport = (0, 0, *size_px)
         target.color_mask = True, True, True, True
         target.clear(*desk, 1.0)
-        self._paper.draw(camera, size_px, self._page_mm, paper, desk)
-        self._reference.draw(camera, size_px, self._opacity, ink)
-        self._ink.lay(camera, size_px, self._page_mm, ink)
+        # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
+        is_bare = not self._shows_reference and camera.rotation_rad == 0.0
+        page_mm, radius_mm = self._page_mm, self._dots.buffer.mean_radius_mm
+        self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
+        if self._shows_reference:
+            self._reference.draw(camera, size_px, self._opacity, ink)
+        self._ink.lay(camera, size_px, page_mm, radius_mm, ink, paper if is_bare else None)
+        if marks:
+            self._dots.draw_marks(camera, size_px, self._origin_mm, self._preview, marks)
+        if self._tip:
+            self._overlay.draw(camera, size_px, *self._tip)
 
     def release(self) -> None:
         """Free every GL object."""
-        for one in (self._dots, self._ink, self._reference, self._paper):
+        for one in (self._overlay, self._dots, self._ink, self._reference, self._paper):
             one.release()
+
+    @property
+    def _shows_reference(self) -> bool:
+        return self._opacity > 0 and self._reference.is_set
 
     @property
     def _origin_mm(self) -> tuple[float, float]:

@@ -1,0 +1,358 @@
+"""Vector instructions for the inner loops of cells, written as LLVM operations.
+
+A cell of up to `LANES` corners is one row of vector lanes, so a bisector is tested against all
+corners at once, without a branch. LLVM lowers the same operations to AVX-512, AVX2, SSE or NEON.
+Sums over lanes are added as a tree in a fixed order.
+
+A *cell buffer* is a pointer to ``3 * LANES`` numbers on the stack: corners 0..m - 1, followed by
+the same m corners again, so that a run around the end can be read in one piece.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
+LANES = 16
+"""Corners a cell may have here."""
+
+SCAN = 8
+"""Dots that `near_mask` tests at once; arrays need this many numbers of padding."""
+
+_F8, _I4, _I8 = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
+_FAST = ("contract",)
+
+Doubles = Any
+Ints = Any
+
+
+def _splat(builder: Any, value: Any, lanes: int) -> Any:
+    vector = ir.VectorType(value.type, lanes)
+    one = builder.insert_element(ir.Constant(vector, ir.Undefined), value, _I4(0))
+    zeros = ir.Constant(ir.VectorType(_I4, lanes), [0] * lanes)
+    return builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined), zeros)
+
+
+def _load(builder: Any, pointer: Any, index: Any, lanes: int) -> Any:
+    element = pointer.type.pointee
+    there = builder.gep(pointer, [index])
+    wide = builder.bitcast(there, ir.VectorType(element, lanes).as_pointer())
+    return builder.load(wide, align=element.width // 8 if isinstance(element, ir.IntType) else 8)
+
+
+def _store(builder: Any, vector: Any, pointer: Any, index: Any) -> None:
+    element = pointer.type.pointee
+    there = builder.gep(pointer, [index])
+    wide = builder.bitcast(there, vector.type.as_pointer())
+    builder.store(vector, wide, align=element.width // 8 if isinstance(element, ir.IntType) else 8)
+
+
+def _lane_numbers(lanes: int) -> Any:
+    return ir.Constant(ir.VectorType(_I4, lanes), list(range(lanes)))
+
+
+def _lanes_below(builder: Any, m: Any, lanes: int) -> Any:
+    limit = _splat(builder, builder.trunc(m, _I4), lanes)
+    return builder.icmp_signed("<", _lane_numbers(lanes), limit)
+
+
+def _tree(builder: Any, vector: Any, combine: Callable[[Any, Any], Any]) -> Any:
+    lanes = vector.type.count
+    while lanes > 1:
+        lanes //= 2
+        low = ir.Constant(ir.VectorType(_I4, lanes), list(range(lanes)))
+        high = ir.Constant(ir.VectorType(_I4, lanes), list(range(lanes, 2 * lanes)))
+        undefined = ir.Constant(vector.type, ir.Undefined)
+        vector = combine(
+            builder.shuffle_vector(vector, undefined, low),
+            builder.shuffle_vector(vector, undefined, high),
+        )
+    return builder.extract_element(vector, _I4(0))
+
+
+def _mask_bits(builder: Any, mask: Any, lanes: int) -> Any:
+    return builder.zext(builder.bitcast(mask, ir.IntType(lanes)), _I8)
+
+
+def _mul(builder: Any, a: Any, b: Any) -> Any:
+    return builder.fmul(a, b, flags=_FAST)
+
+
+def _add(builder: Any, a: Any, b: Any) -> Any:
+    return builder.fadd(a, b, flags=_FAST)
+
+
+def _sub(builder: Any, a: Any, b: Any) -> Any:
+    return builder.fsub(a, b, flags=_FAST)
+
+
+def _data(context: Any, builder: Any, array_type: Any, array: Any) -> Any:
+    return cgutils.create_struct_proxy(array_type)(context, builder, value=array).data
+
+
+@intrinsic(prefer_literal=True)
+def stack_doubles(typing_context: Any, n: Any) -> Any:
+    """Return a pointer to n doubles on the stack, n a literal."""
+    size = n.literal_value
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return cgutils.alloca_once(builder, _F8, size=size)
+
+    return types.CPointer(types.float64)(n), generate
+
+
+@intrinsic(prefer_literal=True)
+def stack_ints(typing_context: Any, n: Any) -> Any:
+    """Return a pointer to n 32-bit integers on the stack, n a literal."""
+    size = n.literal_value
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return cgutils.alloca_once(builder, _I4, size=size)
+
+    return types.CPointer(types.int32)(n), generate
+
+
+@intrinsic
+def get(typing_context: Any, pointer: Any, index: Any) -> Any:
+    """Return ``pointer[index]``."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.load(builder.gep(args[0], [args[1]]))
+
+    return pointer.dtype(pointer, types.int64), generate
+
+
+@intrinsic
+def put(typing_context: Any, pointer: Any, index: Any, value: Any) -> Any:
+    """Set ``pointer[index]``."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        builder.store(args[2], builder.gep(args[0], [args[1]]))
+        return context.get_dummy_value()
+
+    return types.void(pointer, types.int64, pointer.dtype), generate
+
+
+@intrinsic
+def lowest_bit(typing_context: Any, bits: Any) -> Any:
+    """Return the number of the lowest bit set, 64 if none is."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.cttz(args[0], ir.Constant(ir.IntType(1), 0))
+
+    return types.int64(types.int64), generate
+
+
+@intrinsic
+def near_mask(typing_context: Any, xs: Any, ys: Any, j: Any, x: Any, y: Any, limit: Any) -> Any:
+    """Return bits for the dots j..j + SCAN - 1 with ``0 < distance² < limit`` from (x, y)."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        px = _data(context, builder, signature.args[0], args[0])
+        py = _data(context, builder, signature.args[1], args[1])
+        dx = _sub(builder, _load(builder, px, args[2], SCAN), _splat(builder, args[3], SCAN))
+        dy = _sub(builder, _load(builder, py, args[2], SCAN), _splat(builder, args[4], SCAN))
+        d2 = _add(builder, _mul(builder, dx, dx), _mul(builder, dy, dy))
+        near = builder.fcmp_ordered("<", d2, _splat(builder, args[5], SCAN))
+        apart = builder.fcmp_ordered(">", d2, ir.Constant(d2.type, [0.0] * SCAN))
+        return _mask_bits(builder, builder.and_(near, apart), SCAN)
+
+    signature = types.int64(xs, ys, types.int64, types.float64, types.float64, types.float64)
+    return signature, generate
+
+
+@intrinsic
+def out_mask(typing_context: Any, us: Any, vs: Any, a: Any, b: Any, limit: Any) -> Any:
+    """Return bits for the corners with ``a u + b v > limit``, lanes beyond the cell included."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        u = _load(builder, args[0], _I8(0), LANES)
+        v = _load(builder, args[1], _I8(0), LANES)
+        s = _add(
+            builder,
+            _mul(builder, u, _splat(builder, args[2], LANES)),
+            _mul(builder, v, _splat(builder, args[3], LANES)),
+        )
+        out = builder.fcmp_ordered(">", s, _splat(builder, args[4], LANES))
+        return _mask_bits(builder, out, LANES)
+
+    real = types.float64
+    return types.int64(us, vs, real, real, real), generate
+
+
+@intrinsic
+def roll(typing_context: Any, row: Any, first: Any, kept: Any, p: Any, q: Any) -> Any:
+    """Keep `kept` entries of a cell buffer from `first` on and put p and q behind them."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        row_, first_, kept_, p_, q_ = args
+        vector = _load(builder, row_, first_, LANES)
+        number = _splat(builder, builder.trunc(kept_, _I4), LANES)
+        lane = _lane_numbers(LANES)
+        ones = ir.Constant(lane.type, [1] * LANES)
+        at_p = builder.icmp_signed("==", lane, number)
+        at_q = builder.icmp_signed("==", lane, builder.add(number, ones))
+        vector = builder.select(at_p, _splat(builder, p_, LANES), vector)
+        vector = builder.select(at_q, _splat(builder, q_, LANES), vector)
+        _store(builder, vector, row_, _I8(0))
+        _store(builder, vector, row_, builder.add(kept_, _I8(2)))
+        return context.get_dummy_value()
+
+    return types.void(row, types.int64, types.int64, row.dtype, row.dtype), generate
+
+
+@intrinsic
+def reach2_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
+    """Return the largest squared distance of the m corners from the dot."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        u = _load(builder, args[0], _I8(0), LANES)
+        v = _load(builder, args[1], _I8(0), LANES)
+        d2 = _add(builder, _mul(builder, u, u), _mul(builder, v, v))
+        zero = ir.Constant(d2.type, [0.0] * LANES)
+        d2 = builder.select(_lanes_below(builder, args[2], LANES), d2, zero)
+
+        def larger(a: Any, b: Any) -> Any:
+            return builder.select(builder.fcmp_ordered(">", a, b), a, b)
+
+        return _tree(builder, d2, larger)
+
+    return types.float64(us, vs, types.int64), generate
+
+
+@intrinsic
+def moments_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
+    """Return twice the area and six times both first moments of the m corners' polygon."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        u0 = _load(builder, args[0], _I8(0), LANES)
+        v0 = _load(builder, args[1], _I8(0), LANES)
+        u1 = _load(builder, args[0], _I8(1), LANES)
+        v1 = _load(builder, args[1], _I8(1), LANES)
+        cross = _sub(builder, _mul(builder, u0, v1), _mul(builder, u1, v0))
+        below = _lanes_below(builder, args[2], LANES)
+        zero = ir.Constant(cross.type, [0.0] * LANES)
+
+        def total(vector: Any) -> Any:
+            kept = builder.select(below, vector, zero)
+            return _tree(builder, kept, lambda a, b: builder.fadd(a, b))
+
+        sums = [
+            total(cross),
+            total(_mul(builder, cross, _add(builder, u0, u1))),
+            total(_mul(builder, cross, _add(builder, v0, v1))),
+        ]
+        return context.make_tuple(builder, signature.return_type, sums)
+
+    return types.UniTuple(types.float64, 3)(us, vs, types.int64), generate
+
+
+@intrinsic
+def store_lanes(typing_context: Any, numbers: Any, table: Any, i: Any) -> Any:
+    """Copy a cell buffer's first `LANES` numbers to row i of a table `LANES` wide."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = _data(context, builder, signature.args[1], args[1])
+        vector = _load(builder, args[0], _I8(0), LANES)
+        _store(builder, vector, data, builder.mul(args[2], _I8(LANES)))
+        return context.get_dummy_value()
+
+    return types.void(numbers, table, types.int64), generate
+
+
+def _gather(builder: Any, base: Any, index: Any, mask: Any) -> Any:
+    """Load ``base[index]`` in the lanes of the mask, 0 in the others."""
+    lanes = index.type.count
+    vector = ir.VectorType(_F8, lanes)
+    pointers = ir.VectorType(_F8.as_pointer(), lanes)
+    offsets = builder.shl(
+        builder.sext(index, ir.VectorType(_I8, lanes)),
+        ir.Constant(ir.VectorType(_I8, lanes), [3] * lanes),
+    )
+    addresses = builder.add(_splat(builder, builder.ptrtoint(base, _I8), lanes), offsets)
+    kind = ir.FunctionType(vector, [pointers, _I4, mask.type, vector])
+    name = f"llvm.masked.gather.v{lanes}f64.v{lanes}p0"
+    function = cgutils.get_or_insert_function(builder.module, kind, name)
+    zeros = ir.Constant(vector, [0.0] * lanes)
+    return builder.call(function, [builder.inttoptr(addresses, pointers), _I4(8), mask, zeros])
+
+
+@intrinsic
+def corners_of_star(
+    typing_context: Any,
+    xs: Any,
+    ys: Any,
+    star: Any,
+    i: Any,
+    m: Any,
+    x: Any,
+    y: Any,
+    A: Any,
+    B: Any,
+    U: Any,
+    V: Any,
+) -> Any:
+    """Put the corners of a cell with known neighbours into U, V; return the corners that fail.
+
+    Corner k is the centre of the circle through the dot and its neighbours k and k + 1. It fails
+    if those two are not in counter-clockwise order, or if the side from it to the next corner
+    runs backwards, which means that another dot has come between. A and B are scratch.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        xs_, ys_, star_, i_, m_, x_, y_, A_, B_, U_, V_ = args
+        px = _data(context, builder, signature.args[0], xs_)
+        py = _data(context, builder, signature.args[1], ys_)
+        table = _data(context, builder, signature.args[2], star_)
+        index = _load(builder, table, builder.mul(i_, _I8(LANES)), LANES)
+        around = _lanes_below(builder, builder.add(m_, _I8(2)), LANES)
+        ax = _sub(builder, _gather(builder, px, index, around), _splat(builder, x_, LANES))
+        ay = _sub(builder, _gather(builder, py, index, around), _splat(builder, y_, LANES))
+        _store(builder, ax, A_, _I8(0))
+        _store(builder, ay, B_, _I8(0))
+        bx, by = _load(builder, A_, _I8(1), LANES), _load(builder, B_, _I8(1), LANES)
+        a2 = _add(builder, _mul(builder, ax, ax), _mul(builder, ay, ay))
+        b2 = _add(builder, _mul(builder, bx, bx), _mul(builder, by, by))
+        cross = _sub(builder, _mul(builder, ax, by), _mul(builder, ay, bx))
+        half = ir.Constant(cross.type, [0.5] * LANES)
+        scale = builder.fdiv(half, cross)
+        u = _mul(builder, _sub(builder, _mul(builder, a2, by), _mul(builder, b2, ay)), scale)
+        v = _mul(builder, _sub(builder, _mul(builder, b2, ax), _mul(builder, a2, bx)), scale)
+        _store(builder, u, U_, _I8(0))
+        _store(builder, v, V_, _I8(0))
+        eu = _sub(builder, _load(builder, U_, _I8(1), LANES), u)
+        ev = _sub(builder, _load(builder, V_, _I8(1), LANES), v)
+        forward = _sub(builder, _mul(builder, ev, bx), _mul(builder, eu, by))
+        zero = ir.Constant(cross.type, [0.0] * LANES)
+        least = _mul(builder, b2, ir.Constant(cross.type, [-1e-13] * LANES))
+        good = builder.and_(
+            builder.fcmp_ordered(">", cross, zero), builder.fcmp_ordered(">=", forward, least)
+        )
+        bad = builder.and_(builder.not_(good), _lanes_below(builder, m_, LANES))
+        return _mask_bits(builder, bad, LANES)
+
+    row = types.int64
+    real = types.float64
+    return types.int64(xs, ys, star, row, row, real, real, A, B, U, V), generate
+
+
+@intrinsic
+def outside_box(typing_context: Any, U: Any, V: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Any:
+    """Return bits for the corners outside a box, lanes beyond the cell included."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        u = _load(builder, args[0], _I8(0), LANES)
+        v = _load(builder, args[1], _I8(0), LANES)
+        low_u, low_v, high_u, high_v = (_splat(builder, a, LANES) for a in args[2:])
+        out = builder.or_(
+            builder.or_(builder.fcmp_ordered("<", u, low_u), builder.fcmp_ordered("<", v, low_v)),
+            builder.or_(builder.fcmp_ordered(">", u, high_u), builder.fcmp_ordered(">", v, high_v)),
+        )
+        return _mask_bits(builder, out, LANES)
+
+    real = types.float64
+    return types.int64(U, V, real, real, real, real), generate

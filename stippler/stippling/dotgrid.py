@@ -1,0 +1,74 @@
+"""The grids that neighbours and border edges are looked up in, one for each compartment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.grid import measure_clearance, spread_edges
+from stippler.stippling.compartments import RECTANGLE, Compartments
+
+DOTS_PER_CELL = 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DotGrid:
+    """Grid cells of all compartments, numbered through; see `stippler.kernels.grid`.
+
+    Attributes
+    ----------
+    real, whole
+        Frame and size of each compartment's grid.
+    n_cells : int
+    edge_start, edge_of_slot : int32
+        Border edges by grid cell.
+    clear : (n_cells,) int32
+        Rings of grid cells without edges.
+    most_edges : int
+        Of one compartment.
+    """
+
+    real: NDArray[np.float64]
+    whole: NDArray[np.int32]
+    n_cells: int
+    edge_start: NDArray[np.int32]
+    edge_of_slot: NDArray[np.int32]
+    clear: NDArray[np.int32]
+    most_edges: int
+
+    @classmethod
+    def over(cls, parts: Compartments, n_dots: NDArray[np.intp]) -> DotGrid:
+        """Lay grids of about `DOTS_PER_CELL` dots a cell; `n_dots` counts by compartment."""
+        real, whole, n_cells = _frames(parts, n_dots)
+        args = (parts.edges, parts.compartment_of_edge, real, whole)
+        edge_start = np.zeros(n_cells + 1, np.int32)
+        edge_of_slot = np.empty(0, np.int32)
+        clear = np.full(n_cells, 1 << 20, np.int32)
+        most_edges = 0
+        if len(parts.edges):
+            spread_edges(*args, edge_start, edge_of_slot, True)
+            np.cumsum(edge_start, out=edge_start)
+            edge_of_slot = np.empty(int(edge_start[-1]), np.int32)
+            spread_edges(*args, edge_start.copy(), edge_of_slot, False)
+            measure_clearance(whole, edge_start, clear)
+            most_edges = int(np.bincount(parts.compartment_of_edge).max())
+        return cls(real, whole, n_cells, edge_start, edge_of_slot, clear, most_edges)
+
+
+def _frames(
+    parts: Compartments, n_dots: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.int32], int]:
+    width, height = (parts.box[:, 2:] - parts.box[:, :2]).T
+    share = n_dots + 1.0
+    most = 4.0 * share + 64.0  # grid cells allowed to a compartment, whatever its shape
+    side = np.sqrt(parts.area * DOTS_PER_CELL / share)
+    side = np.maximum(side, np.sqrt(width * height / most))
+    side = np.maximum(side, np.maximum(width, height) / most)
+    nx = np.maximum(np.ceil(width / side), 1).astype(np.int64)
+    ny = np.maximum(np.ceil(height / side), 1).astype(np.int64)
+    first = np.concatenate([[0], np.cumsum(nx * ny)])
+    real = np.column_stack([parts.box[:, :2], side, 1.0 / side, parts.box])
+    whole = np.column_stack([nx, ny, first[:-1], parts.kind != RECTANGLE]).astype(np.int32)
+    return np.ascontiguousarray(real), np.ascontiguousarray(whole), int(first[-1])
