@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -30,7 +31,8 @@ def open_context() -> moderngl.Context:
         If there is no OpenGL 3.3 to be had.
     """
     try:
-        ctx = moderngl.create_standalone_context(require=330, backend="egl")
+        create: Any = moderngl.create_standalone_context  # its stub mistypes the backend
+        ctx: moderngl.Context = create(require=330, backend="egl")
     except Exception as error:
         raise DisplayError(
             f"no OpenGL 3.3 ({str(error).strip() or type(error).__name__})",

@@ -44,7 +44,7 @@ class ShapedDots(Protocol):
 
 
 @inline
-def hash32(x):  # type: ignore[no-untyped-def]
+def hash32(x):
     """Mix 32 bits."""
     x = np.uint32(x)
     x = np.uint32(x ^ (x >> np.uint32(16)))
@@ -55,7 +55,7 @@ def hash32(x):  # type: ignore[no-untyped-def]
 
 
 @inline
-def fill_coefficients(seed, roughness, c):  # type: ignore[no-untyped-def]
+def fill_coefficients(seed, roughness, c):
     """Fill c with x_2, y_2, x_3, ... y_9 for a dot's seed and roughness."""
     total = 1e-6
     for i in range(N_HARMONICS):
@@ -68,7 +68,7 @@ def fill_coefficients(seed, roughness, c):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _trace(start, stop, center, radius, elongation, angle, rough, seed, waves, out):  # type: ignore[no-untyped-def]
+def _trace(start, stop, center, radius, elongation, angle, rough, seed, waves, out):
     """Trace outlines; `waves` (m, 3 + 4 N_HARMONICS) is made by `wave_table`."""
     c = np.empty(2 * N_HARMONICS)
     for i in range(start, stop):

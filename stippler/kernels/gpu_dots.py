@@ -22,14 +22,14 @@ _PER_TURN = 65536.0
 
 
 @inline
-def _pack_place(row, x, y, radius):  # type: ignore[no-untyped-def]
+def _pack_place(row, x, y, radius):
     row[0] = x
     row[1] = y
     row[2] = radius
 
 
 @inline
-def _pack_shape(row, elongation, angle, roughness, seed, flags):  # type: ignore[no-untyped-def]
+def _pack_shape(row, elongation, angle, roughness, seed, flags):
     e = np.uint32((elongation - 1.0) * _PER_ELONGATION + 0.5)
     turns = angle / (2.0 * math.pi)
     a = np.uint32(np.int64((turns - math.floor(turns)) * _PER_TURN + 0.5) & 0xFFFF)
@@ -40,7 +40,7 @@ def _pack_shape(row, elongation, angle, roughness, seed, flags):  # type: ignore
 
 
 @kernel
-def _pack(start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, flags, place, shape):  # type: ignore[no-untyped-def] # fmt: skip # noqa: E501
+def _pack(start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, flags, place, shape):  # fmt: skip # noqa: E501
     for k in range(start, stop):
         i = rows[k]
         _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
@@ -48,14 +48,14 @@ def _pack(start, stop, rows, position, radius, x0, y0, elongation, angle, roughn
 
 
 @kernel
-def _pack_places(start, stop, rows, position, radius, x0, y0, place):  # type: ignore[no-untyped-def]
+def _pack_places(start, stop, rows, position, radius, x0, y0, place):
     for k in range(start, stop):
         i = rows[k]
         _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
 
 
 @inline
-def _spread(x):  # type: ignore[no-untyped-def]
+def _spread(x):
     """Put a 0 between the bits of a number below 256."""
     x = (x | (x << 4)) & 0x0F0F
     x = (x | (x << 2)) & 0x3333
@@ -63,7 +63,7 @@ def _spread(x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _morton(start, stop, position, per_x, per_y, out):  # type: ignore[no-untyped-def]
+def _morton(start, stop, position, per_x, per_y, out):
     for i in range(start, stop):
         x = min(max(int(position[i, 0] * per_x), 0), 255)
         y = min(max(int(position[i, 1] * per_y), 0), 255)
@@ -71,7 +71,7 @@ def _morton(start, stop, position, per_x, per_y, out):  # type: ignore[no-untype
 
 
 @kernel
-def _choose(place, left, top, right, bottom, pad, low, high, out):  # type: ignore[no-untyped-def]
+def _choose(place, left, top, right, bottom, pad, low, high, out):
     n = 0
     for i in range(place.shape[0]):
         radius = place[i, 2]

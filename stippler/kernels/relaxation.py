@@ -18,7 +18,7 @@ from stippler.kernels.field import integrate_edge
 from stippler.kernels.grid import column_of
 from stippler.kernels.jit import inline, kernel
 from stippler.kernels.simd import (
-    LANES,
+    BUFFER,
     get,
     moments_of,
     put,
@@ -44,8 +44,6 @@ U1 = NDArray[np.uint8]
 INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 """What a cell is: bounded by dots alone; by a border as well; not computed."""
 
-_ROOM = 3 * LANES
-
 
 @inline
 def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
@@ -69,29 +67,28 @@ def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[in
 
 @inline
 def _distance2_to_span(
-    x: float, y: float, row: int, first: int, last: int, grid: F8, slack: float
+    x: float, y: float, row: int, first: int, last: int, gx: float, gy: float, h: float, slack: float
 ) -> float:
     """Return the squared distance to the nearest place a dot of these grid cells can be."""
-    x0, y0, h = grid[0], grid[1], grid[2]
-    dx = max(max(x0 + first * h - x, x - (x0 + (last + 1) * h)) - slack, 0.0)
-    dy = max(max(y0 + row * h - y, y - (y0 + (row + 1) * h)) - slack, 0.0)
+    dx = max(max(gx + first * h - x, x - (gx + (last + 1) * h)) - slack, 0.0)
+    dy = max(max(gy + row * h - y, y - (gy + (row + 1) * h)) - slack, 0.0)
     return (dx * dx + dy * dy) * (1.0 - 1e-9)
 
 
 @inline
 def seen_distance(
-    x: float, y: float, ring: int, ix: int, iy: int, nx: int, ny: int, grid: F8, slack: float
+    x: float, y: float, ring: int, ix: int, iy: int, nx: int, ny: int, gx: float, gy: float, h: float, slack: float
 ) -> float:
     """Return the distance within which all dots of the compartment are in rings up to `ring`."""
     best = math.inf
     if ix - ring > 0:
-        best = min(best, x - (grid[0] + (ix - ring) * grid[2]))
+        best = min(best, x - (gx + (ix - ring) * h))
     if ix + ring < nx - 1:
-        best = min(best, grid[0] + (ix + ring + 1) * grid[2] - x)
+        best = min(best, gx + (ix + ring + 1) * h - x)
     if iy - ring > 0:
-        best = min(best, y - (grid[1] + (iy - ring) * grid[2]))
+        best = min(best, y - (gy + (iy - ring) * h))
     if iy + ring < ny - 1:
-        best = min(best, grid[1] + (iy + ring + 1) * grid[2] - y)
+        best = min(best, gy + (iy + ring + 1) * h - y)
     return max(best * (1.0 - 1e-9) - slack, 0.0)
 
 
@@ -171,7 +168,9 @@ def _outline_within(
     nx: int,
     ny: int,
     first_cell: int,
-    grid: F8,
+    gx: float,
+    gy: float,
+    h: float,
     edges: F8,
     next_edge: I4,
     edge_start: I4,
@@ -193,13 +192,13 @@ def _outline_within(
             cell2[r, k] = cell[r, k]
     n2 = m
     if ix - ring > 0:
-        n2 = cut_cell(cell2, n2, -1.0, 0.0, x - (grid[0] + (ix - ring) * grid[2]), -1.0)
+        n2 = cut_cell(cell2, n2, -1.0, 0.0, x - (gx + (ix - ring) * h), -1.0)
     if ix + ring < nx - 1:
-        n2 = cut_cell(cell2, n2, 1.0, 0.0, grid[0] + (ix + ring + 1) * grid[2] - x, -1.0)
+        n2 = cut_cell(cell2, n2, 1.0, 0.0, gx + (ix + ring + 1) * h - x, -1.0)
     if iy - ring > 0:
-        n2 = cut_cell(cell2, n2, 0.0, -1.0, y - (grid[1] + (iy - ring) * grid[2]), -1.0)
+        n2 = cut_cell(cell2, n2, 0.0, -1.0, y - (gy + (iy - ring) * h), -1.0)
     if iy + ring < ny - 1:
-        n2 = cut_cell(cell2, n2, 0.0, 1.0, grid[1] + (iy + ring + 1) * grid[2] - y, -1.0)
+        n2 = cut_cell(cell2, n2, 0.0, 1.0, gy + (iy + ring + 1) * h - y, -1.0)
     n_near = _gather_edges(
         edge_start, edge_of_slot, ring, ix, iy, nx, ny, first_cell, near, seen, stamp
     )
@@ -392,8 +391,8 @@ def relax_dots(
     suspect
         Unless empty, set to 1 for the old and new neighbours of dots whose star changes.
     """
-    U, V, N = stack_doubles(_ROOM), stack_doubles(_ROOM), stack_ints(_ROOM)
-    for k in range(_ROOM):
+    U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
+    for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
         put(N, k, np.int32(0))
@@ -412,14 +411,15 @@ def relax_dots(
             new_x[i], new_y[i], gone[i] = x, y, 0.0
             continue
         c = compartment_of_dot[i]
-        grid = grid_real[c]
+        gx, gy, h = grid_real[c, 0], grid_real[c, 1], grid_real[c, 2]
         nx, ny, first_cell = grid_int[c, 0], grid_int[c, 1], grid_int[c, 2]
-        ix = column_of(x, grid[0], grid[3], nx)
-        iy = column_of(y, grid[1], grid[3], ny)
-        x0, y0, x1, y1 = grid[4] - x, grid[5] - y, grid[6] - x, grid[7] - y
+        ix = column_of(x, gx, grid_real[c, 3], nx)
+        iy = column_of(y, gy, grid_real[c, 3], ny)
+        x0, y0 = grid_real[c, 4] - x, grid_real[c, 5] - y
+        x1, y1 = grid_real[c, 6] - x, grid_real[c, 7] - y
         free = math.inf
         if grid_int[c, 3] == 1:
-            free = max(clear[first_cell + iy * nx + ix] - 1, 0) * grid[2]
+            free = max(clear[first_cell + iy * nx + ix] - 1, 0) * h
         is_packed = True
         is_outlined = False
         n_border = n = 0
@@ -433,7 +433,7 @@ def relax_dots(
                     if last < first:
                         continue
                     reach2 = reach2_of(U, V, m)
-                    if _distance2_to_span(x, y, row, first, last, grid, slack) >= 4.0 * reach2:
+                    if _distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= 4.0 * reach2:
                         continue
                     a = first_cell + row * nx
                     m = cut_lanes_by_run(
@@ -464,7 +464,7 @@ def relax_dots(
                 if m == OVERFLOW:
                     break
                 reach2 = reach2_of_cell(cell, m)
-            far = seen_distance(x, y, ring, ix, iy, nx, ny, grid, slack)
+            far = seen_distance(x, y, ring, ix, iy, nx, ny, gx, gy, h, slack)
             is_last = 4.0 * reach2 <= far * far
             if free * free <= reach2:
                 # the cell may lean out of the compartment: only its piece counts
@@ -482,7 +482,9 @@ def relax_dots(
                     nx,
                     ny,
                     first_cell,
-                    grid,
+                    gx,
+                    gy,
+                    h,
                     edges,
                     next_edge,
                     edge_start,
@@ -543,6 +545,6 @@ def relax_dots(
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
             share = _free_share(out, n_border, du, dv, margin)
             du, dv = share * du, share * dv
-        new_x[i] = min(max(x + du, grid[4]), grid[6])
-        new_y[i] = min(max(y + dv, grid[5]), grid[7])
+        new_x[i] = min(max(x + du, grid_real[c, 4]), grid_real[c, 6])
+        new_y[i] = min(max(y + dv, grid_real[c, 5]), grid_real[c, 7])
         gone[i] = math.sqrt(du * du + dv * dv)

@@ -4,8 +4,10 @@ A cell of up to `LANES` corners is one row of vector lanes, so a bisector is tes
 corners at once, without a branch. LLVM lowers the same operations to AVX-512, AVX2, SSE or NEON.
 Sums over lanes are added as a tree in a fixed order.
 
-A *cell buffer* is a pointer to ``3 * LANES`` numbers on the stack: corners 0..m - 1, followed by
-the same m corners again, so that a run around the end can be read in one piece.
+A *cell buffer* is a pointer to ``BUFFER`` numbers on the stack: corners 0..m - 1, followed by the
+same m corners again, so that a run around the end can be read in one piece. A row of corners has,
+`FRONT` numbers further on, a second copy of the first `LANES` for tests against all corners: a
+processor passes a value from store to load without delay only where one store wrote all of it.
 """
 
 from __future__ import annotations
@@ -19,6 +21,8 @@ from numba.extending import intrinsic
 
 LANES = 16
 """Corners a cell may have here."""
+
+FRONT, BUFFER = 3 * LANES, 4 * LANES
 
 SCAN = 8
 """Dots that `near_mask` tests at once; arrays need this many numbers of padding."""
@@ -58,6 +62,13 @@ def _lane_numbers(lanes: int) -> Any:
 def _lanes_below(builder: Any, m: Any, lanes: int) -> Any:
     limit = _splat(builder, builder.trunc(m, _I4), lanes)
     return builder.icmp_signed("<", _lane_numbers(lanes), limit)
+
+
+def _next_lane(builder: Any, vector: Any) -> Any:
+    """Return the vector with lane k + 1 in lane k; the last lane has no meaning."""
+    lanes = vector.type.count
+    order = ir.Constant(ir.VectorType(_I4, lanes), [*range(1, lanes), lanes - 1])
+    return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined), order)
 
 
 def _tree(builder: Any, vector: Any, combine: Callable[[Any, Any], Any]) -> Any:
@@ -100,7 +111,9 @@ def stack_doubles(typing_context: Any, n: Any) -> Any:
     size = n.literal_value
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return cgutils.alloca_once(builder, _F8, size=size)
+        buffer = cgutils.alloca_once(builder, _F8, size=size)
+        buffer.align = 64
+        return buffer
 
     return types.CPointer(types.float64)(n), generate
 
@@ -111,7 +124,9 @@ def stack_ints(typing_context: Any, n: Any) -> Any:
     size = n.literal_value
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return cgutils.alloca_once(builder, _I4, size=size)
+        buffer = cgutils.alloca_once(builder, _I4, size=size)
+        buffer.align = 64
+        return buffer
 
     return types.CPointer(types.int32)(n), generate
 
@@ -170,8 +185,8 @@ def out_mask(typing_context: Any, us: Any, vs: Any, a: Any, b: Any, limit: Any) 
     """Return bits for the corners with ``a u + b v > limit``, lanes beyond the cell included."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        u = _load(builder, args[0], _I8(0), LANES)
-        v = _load(builder, args[1], _I8(0), LANES)
+        u = _load(builder, args[0], _I8(FRONT), LANES)
+        v = _load(builder, args[1], _I8(FRONT), LANES)
         s = _add(
             builder,
             _mul(builder, u, _splat(builder, args[2], LANES)),
@@ -200,6 +215,8 @@ def roll(typing_context: Any, row: Any, first: Any, kept: Any, p: Any, q: Any) -
         vector = builder.select(at_q, _splat(builder, q_, LANES), vector)
         _store(builder, vector, row_, _I8(0))
         _store(builder, vector, row_, builder.add(kept_, _I8(2)))
+        if row.dtype == types.float64:
+            _store(builder, vector, row_, _I8(FRONT))
         return context.get_dummy_value()
 
     return types.void(row, types.int64, types.int64, row.dtype, row.dtype), generate
@@ -210,8 +227,8 @@ def reach2_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     """Return the largest squared distance of the m corners from the dot."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        u = _load(builder, args[0], _I8(0), LANES)
-        v = _load(builder, args[1], _I8(0), LANES)
+        u = _load(builder, args[0], _I8(FRONT), LANES)
+        v = _load(builder, args[1], _I8(FRONT), LANES)
         d2 = _add(builder, _mul(builder, u, u), _mul(builder, v, v))
         zero = ir.Constant(d2.type, [0.0] * LANES)
         d2 = builder.select(_lanes_below(builder, args[2], LANES), d2, zero)
@@ -231,8 +248,7 @@ def moments_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         u0 = _load(builder, args[0], _I8(0), LANES)
         v0 = _load(builder, args[1], _I8(0), LANES)
-        u1 = _load(builder, args[0], _I8(1), LANES)
-        v1 = _load(builder, args[1], _I8(1), LANES)
+        u1, v1 = _next_lane(builder, u0), _next_lane(builder, v0)
         cross = _sub(builder, _mul(builder, u0, v1), _mul(builder, u1, v0))
         below = _lanes_below(builder, args[2], LANES)
         zero = ir.Constant(cross.type, [0.0] * LANES)
@@ -291,8 +307,6 @@ def corners_of_star(
     m: Any,
     x: Any,
     y: Any,
-    A: Any,
-    B: Any,
     U: Any,
     V: Any,
 ) -> Any:
@@ -300,11 +314,11 @@ def corners_of_star(
 
     Corner k is the centre of the circle through the dot and its neighbours k and k + 1. It fails
     if those two are not in counter-clockwise order, or if the side from it to the next corner
-    runs backwards, which means that another dot has come between. A and B are scratch.
+    runs backwards, which means that another dot has come between.
     """
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        xs_, ys_, star_, i_, m_, x_, y_, A_, B_, U_, V_ = args
+        xs_, ys_, star_, i_, m_, x_, y_, U_, V_ = args
         px = _data(context, builder, signature.args[0], xs_)
         py = _data(context, builder, signature.args[1], ys_)
         table = _data(context, builder, signature.args[2], star_)
@@ -312,9 +326,7 @@ def corners_of_star(
         around = _lanes_below(builder, builder.add(m_, _I8(2)), LANES)
         ax = _sub(builder, _gather(builder, px, index, around), _splat(builder, x_, LANES))
         ay = _sub(builder, _gather(builder, py, index, around), _splat(builder, y_, LANES))
-        _store(builder, ax, A_, _I8(0))
-        _store(builder, ay, B_, _I8(0))
-        bx, by = _load(builder, A_, _I8(1), LANES), _load(builder, B_, _I8(1), LANES)
+        bx, by = _next_lane(builder, ax), _next_lane(builder, ay)
         a2 = _add(builder, _mul(builder, ax, ax), _mul(builder, ay, ay))
         b2 = _add(builder, _mul(builder, bx, bx), _mul(builder, by, by))
         cross = _sub(builder, _mul(builder, ax, by), _mul(builder, ay, bx))
@@ -322,10 +334,11 @@ def corners_of_star(
         scale = builder.fdiv(half, cross)
         u = _mul(builder, _sub(builder, _mul(builder, a2, by), _mul(builder, b2, ay)), scale)
         v = _mul(builder, _sub(builder, _mul(builder, b2, ax), _mul(builder, a2, bx)), scale)
-        _store(builder, u, U_, _I8(0))
-        _store(builder, v, V_, _I8(0))
-        eu = _sub(builder, _load(builder, U_, _I8(1), LANES), u)
-        ev = _sub(builder, _load(builder, V_, _I8(1), LANES), v)
+        for at in (0, FRONT):
+            _store(builder, u, U_, _I8(at))
+            _store(builder, v, V_, _I8(at))
+        eu = _sub(builder, _next_lane(builder, u), u)
+        ev = _sub(builder, _next_lane(builder, v), v)
         forward = _sub(builder, _mul(builder, ev, bx), _mul(builder, eu, by))
         zero = ir.Constant(cross.type, [0.0] * LANES)
         least = _mul(builder, b2, ir.Constant(cross.type, [-1e-13] * LANES))
@@ -337,7 +350,7 @@ def corners_of_star(
 
     row = types.int64
     real = types.float64
-    return types.int64(xs, ys, star, row, row, real, real, A, B, U, V), generate
+    return types.int64(xs, ys, star, row, row, real, real, U, V), generate
 
 
 @intrinsic

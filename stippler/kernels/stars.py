@@ -20,6 +20,7 @@ from stippler.kernels.grid import column_of
 from stippler.kernels.jit import kernel
 from stippler.kernels.relaxation import INNER, sum_field
 from stippler.kernels.simd import (
+    BUFFER,
     LANES,
     corners_of_star,
     get,
@@ -33,9 +34,6 @@ from stippler.kernels.simd import (
 F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
 U1 = NDArray[np.uint8]
-
-_ROOM = 2 * LANES
-
 
 @kernel
 def verify_stars(
@@ -64,11 +62,8 @@ def verify_stars(
 
     Parameters are those of `relaxation.relax_dots`.
     """
-    A, B = stack_doubles(_ROOM), stack_doubles(_ROOM)
-    U, V = stack_doubles(_ROOM), stack_doubles(_ROOM)
-    for k in range(_ROOM):
-        put(A, k, 0.0)
-        put(B, k, 0.0)
+    U, V = stack_doubles(BUFFER), stack_doubles(BUFFER)
+    for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
     out = np.empty((LANES, 4))
@@ -78,17 +73,17 @@ def verify_stars(
         if kind_of_cell[i] != INNER or m < 3 or m + 2 > LANES:
             continue
         x, y = xs[i], ys[i]
-        grid = grid_real[compartment_of_dot[i]]
-        bad = corners_of_star(xs, ys, star, i, m, x, y, A, B, U, V)
-        beyond = outside_box(U, V, grid[4] - x, grid[5] - y, grid[6] - x, grid[7] - y)
+        c = compartment_of_dot[i]
+        x0, y0, x1, y1 = grid_real[c, 4], grid_real[c, 5], grid_real[c, 6], grid_real[c, 7]
+        bad = corners_of_star(xs, ys, star, i, m, x, y, U, V)
+        beyond = outside_box(U, V, x0 - x, y0 - y, x1 - x, y1 - y)
         if (bad | beyond) & ((1 << m) - 1):
             continue
-        c = compartment_of_dot[i]
         if grid_int[c, 3] == 1:
             nx = grid_int[c, 0]
-            ix = column_of(x, grid[0], grid[3], nx)
-            iy = column_of(y, grid[1], grid[3], grid_int[c, 1])
-            free = max(clear[grid_int[c, 2] + iy * nx + ix] - 1, 0) * grid[2]
+            ix = column_of(x, grid_real[c, 0], grid_real[c, 3], nx)
+            iy = column_of(y, grid_real[c, 1], grid_real[c, 3], grid_int[c, 1])
+            free = max(clear[grid_int[c, 2] + iy * nx + ix] - 1, 0) * grid_real[c, 2]
             if free * free <= reach2_of(U, V, m):
                 continue
         todo[i] = 0
@@ -108,13 +103,13 @@ def verify_stars(
         du, dv = du / area, dv / area
         if over != 1.0:
             for k in range(m):
-                a, b = get(A, k), get(B, k)
+                a, b = xs[star[i, k]] - x, ys[star[i, k]] - y
                 if over * (a * du + b * dv) > 0.5 * (a * a + b * b):
                     break
             else:
                 du, dv = over * du, over * dv
-        new_x[i] = min(max(x + du, grid[4]), grid[6])
-        new_y[i] = min(max(y + dv, grid[5]), grid[7])
+        new_x[i] = min(max(x + du, x0), x1)
+        new_y[i] = min(max(y + dv, y0), y1)
         gone[i] = math.sqrt(du * du + dv * dv)
 
 

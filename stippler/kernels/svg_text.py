@@ -24,14 +24,14 @@ _CIRCLE_ROOM = len(_CX) + len(_CY) + len(_R) + len(_END) + 3 * MAX_NUMBER
 
 
 @inline
-def _put(out, at, text):  # type: ignore[no-untyped-def]
+def _put(out, at, text):
     for i in range(text.shape[0]):
         out[at + i] = text[i]
     return at + text.shape[0]
 
 
 @inline
-def _put_number(out, at, value, decimals):  # type: ignore[no-untyped-def]
+def _put_number(out, at, value, decimals):
     """Write ``value / 10**decimals`` in the fewest characters; return the place after it."""
     if value == 0:
         out[at] = 48
@@ -65,7 +65,7 @@ def _put_number(out, at, value, decimals):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _write_circles(start, stop, center, radius, decimals, out, length):  # type: ignore[no-untyped-def]
+def _write_circles(start, stop, center, radius, decimals, out, length):
     scale = 10.0**decimals
     scale_r = 10.0 ** (decimals + RADIUS_DECIMALS)
     for i in range(start, stop):
@@ -81,7 +81,7 @@ def _write_circles(start, stop, center, radius, decimals, out, length):  # type:
 
 
 @inline
-def _put_step(out, at, value, decimals):  # type: ignore[no-untyped-def]
+def _put_step(out, at, value, decimals):
     """Write a number and, in front of it, a space where its sign does not part it already."""
     if value >= 0:
         out[at] = 32
@@ -90,7 +90,7 @@ def _put_step(out, at, value, decimals):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _write_paths(start, stop, chain, decimals, out, length):  # type: ignore[no-untyped-def]
+def _write_paths(start, stop, chain, decimals, out, length):
     """Write chains of Bezier segments; the first as ``c``, the others as ``s``.
 
     All steps are between rounded points, so rounding does not add up along the outline.
@@ -126,7 +126,7 @@ def _write_paths(start, stop, chain, decimals, out, length):  # type: ignore[no-
 
 
 @kernel
-def _join(start, stop, rows, length, offset, out):  # type: ignore[no-untyped-def]
+def _join(start, stop, rows, length, offset, out):
     for i in range(start, stop):
         at = offset[i] - length[i]
         for j in range(length[i]):

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from stippler.kernels.jit import inline, kernel
 from stippler.kernels.simd import (
+    FRONT,
     LANES,
     SCAN,
     get,
@@ -45,7 +46,7 @@ WALL = -1
 @inline
 def start_lanes(U: Any, V: Any, N: Any, x0: float, y0: float, x1: float, y1: float) -> int:
     """Make the cell in lanes a box around the origin; return its number of corners."""
-    for k in range(0, 8, 4):
+    for k in (0, 4, FRONT, FRONT + 4):
         put(U, k, x0)
         put(U, k + 1, x1)
         put(U, k + 2, x1)
@@ -54,8 +55,8 @@ def start_lanes(U: Any, V: Any, N: Any, x0: float, y0: float, x1: float, y1: flo
         put(V, k + 1, y0)
         put(V, k + 2, y1)
         put(V, k + 3, y1)
-        for side in range(4):
-            put(N, k + side, np.int32(WALL - side))
+    for k in range(8):
+        put(N, k, np.int32(WALL - (k & 3)))
     return 4
 
 

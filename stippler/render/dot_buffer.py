@@ -129,7 +129,7 @@ class DotBuffer:
         breaks = np.flatnonzero(np.diff(slots) > _GAP)
         first = slots[np.concatenate([[0], breaks + 1])].tolist()
         last = slots[np.concatenate([breaks, [len(slots) - 1]])].tolist()
-        memory = memoryview(self._words).cast("B")
+        memory = self._words.reshape(-1).view(np.uint8)
         for a, b in zip(first, last, strict=True):
             self.gl.write(memory[a * _STRIDE : (b + 1) * _STRIDE], a * _STRIDE)
 

@@ -18,6 +18,7 @@ from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.paper import Color
 from stippler.render.shaders import Program
+from stippler.render.state import set_state
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
 _MODES = {"all": 1, "selected": 2, "tip": 3}
@@ -67,9 +68,7 @@ class DotsPass:
         if self.buffer.n == 0:
             return
         self._choose(camera, size_px, origin_mm, preview)
-        self._ctx.enable_only(moderngl.BLEND | moderngl.PROGRAM_POINT_SIZE)
-        self._ctx.blend_equation = moderngl.FUNC_ADD
-        self._ctx.blend_func = moderngl.ONE, moderngl.ONE
+        set_state(self._ctx, "add", sprites=True)
         uniforms = _uniforms(camera, whole, origin_mm) | _preview_uniforms(preview, origin_mm)
         self._run_chosen((self._kind(camera, preview),), uniforms)
 
@@ -84,9 +83,7 @@ class DotsPass:
         """Colour the fixed and the selected dots in the framebuffer in use, after `draw`."""
         if not self.buffer.has_flags or self.buffer.n == 0:
             return
-        self._ctx.enable_only(moderngl.BLEND | moderngl.PROGRAM_POINT_SIZE)
-        self._ctx.blend_equation = moderngl.FUNC_ADD
-        self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        set_state(self._ctx, "over", sprites=True)
         uniforms = _uniforms(camera, size_px, origin_mm) | _preview_uniforms(preview, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
         self._run_chosen((self._kind(camera, preview), "MARKS"), uniforms)
@@ -146,7 +143,7 @@ class DotsPass:
             program = Program(self._ctx, "dots.vert", "dots.frag", asked)
             self._programs[defines] = program
         as_points = "POINTS" in defines
-        key = (*defines, data.glo)
+        key: tuple[str | int, ...] = (*defines, data.glo)
         array = self._arrays.get(key)
         if array is None:
             rate = "" if as_points else "/i"

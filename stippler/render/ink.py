@@ -7,6 +7,7 @@ import moderngl
 from stippler.camera import Camera, Size
 from stippler.render.paper import Color, page_matrix
 from stippler.render.shaders import Program
+from stippler.render.state import set_state, set_target
 
 MARGIN_PX = 40
 """Around the picture, so that sprites whose centre lies outside are drawn too."""
@@ -14,7 +15,7 @@ MARGIN_PX = 40
 
 def crowding(radius_px: float) -> float:
     """Return how far a pixel holds many dots rather than part of one; fitted to drawings."""
-    return 0.85 / (1.0 + (radius_px / 0.95) ** 3.5)
+    return 0.85 / (1.0 + float((radius_px / 0.95) ** 3.5))
 
 
 class InkTarget:
@@ -35,9 +36,7 @@ class InkTarget:
             self._texture = self._ctx.texture(whole, 1, dtype="f4")
             self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
             self._framebuffer = self._ctx.framebuffer([self._texture])
-        self._framebuffer.use()
-        self._framebuffer.scissor = None
-        self._framebuffer.color_mask = True, True, True, True
+        set_target(self._framebuffer, whole)
         self._framebuffer.clear()
         return whole
 
@@ -52,11 +51,8 @@ class InkTarget:
     ) -> None:
         """Ink the page in the framebuffer in use, over a ground or over what is there."""
         assert self._texture is not None
-        ctx = self._ctx
-        ctx.enable_only(moderngl.NOTHING if ground else moderngl.BLEND)
-        ctx.blend_equation = moderngl.FUNC_ADD
-        ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        ctx.clear_samplers(0, 1)
+        set_state(self._ctx, "none" if ground else "over")
+        self._ctx.clear_samplers(0, 1)
         self._texture.use(0)
         self._program.set(
             {

@@ -6,6 +6,7 @@ import moderngl
 
 from stippler.camera import Camera, Point, Size
 from stippler.render.shaders import Program
+from stippler.render.state import set_state
 
 LINE_PX = 1.25
 
@@ -20,10 +21,7 @@ class OverlayPass:
 
     def draw(self, camera: Camera, size_px: Size, center_mm: Point, radius_mm: float) -> None:
         """Draw a ring into the framebuffer in use."""
-        ctx = self._ctx
-        ctx.enable_only(moderngl.BLEND)
-        ctx.blend_equation = moderngl.FUNC_ADD
-        ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        set_state(self._ctx, "over")
         x, y = camera.page_to_screen(center_mm, size_px)
         self._program.set(
             {

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.render.shaders import Program
+from stippler.render.state import set_state
 
 Color = tuple[float, float, float]
 
@@ -46,10 +47,7 @@ class PaperPass:
             Leave out the middle, which another pass is going to cover.
         """
         paper, desk = colors
-        ctx = self._ctx
-        ctx.enable_only(moderngl.BLEND)
-        ctx.blend_equation = moderngl.FUNC_ADD
-        ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        set_state(self._ctx, "over")
         w, h = page_mm
         out, inset = SHADOW_PX / camera.px_per_mm, 2.0 / camera.px_per_mm
         has_middle = not edge_only or min(w, h) <= 2 * inset

@@ -8,6 +8,7 @@ from stippler.camera import Camera, Size
 from stippler.drawing.reference import Reference
 from stippler.render.paper import Color, page_matrix
 from stippler.render.shaders import Program
+from stippler.render.state import set_state
 
 MAX_SIDE_PX = 4096
 
@@ -50,11 +51,8 @@ class ReferencePass:
     def draw(self, camera: Camera, size_px: Size, opacity: float, ink: Color) -> None:
         """Draw into the framebuffer in use."""
         assert self._texture is not None
-        ctx = self._ctx
-        ctx.enable_only(moderngl.BLEND)
-        ctx.blend_equation = moderngl.FUNC_ADD
-        ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        ctx.clear_samplers(0, 1)
+        set_state(self._ctx, "over")
+        self._ctx.clear_samplers(0, 1)
         self._texture.use(0)
         self._program.set(
             {

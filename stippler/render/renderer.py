@@ -15,6 +15,7 @@ from stippler.render.ink import InkTarget
 from stippler.render.overlay import OverlayPass
 from stippler.render.paper import Color, PaperPass
 from stippler.render.reference import ReferencePass
+from stippler.render.state import set_target
 
 PAPER: Color = (0.984, 0.980, 0.965)
 DESK: Color = (0.827, 0.816, 0.792)
@@ -117,13 +118,9 @@ class Renderer:
         marks : (colour, colour) or None
             Of fixed and of selected dots; None draws them like all others.
         """
-        self._ctx.wireframe = False
         self._dots.draw(camera, size_px, self._origin_mm, self._ink, self._preview)
         target = framebuffer or self._ctx.screen
-        target.use()
-        target.scissor = None
-        target.viewport = (0, 0, *size_px)
-        target.color_mask = True, True, True, True
+        set_target(target, size_px)
         target.clear(*desk, 1.0)
         # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
         is_bare = not self._shows_reference and camera.rotation_rad == 0.0

@@ -1,0 +1,33 @@
+"""The GL state a pass needs, set in full, so that nothing depends on what ran before."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import moderngl
+
+from stippler.camera import Size
+
+Blending = Literal["none", "over", "add"]
+
+
+def set_state(ctx: moderngl.Context, blending: Blending, *, sprites: bool = False) -> None:
+    """Set blending and whether shaders give points their size; depth, culling and all else off."""
+    gl: Any = ctx  # moderngl's stubs type these setters by their getters
+    flags = moderngl.NOTHING if blending == "none" else moderngl.BLEND
+    gl.enable_only(flags | (moderngl.PROGRAM_POINT_SIZE if sprites else 0))
+    gl.blend_equation = moderngl.FUNC_ADD
+    if blending == "add":
+        gl.blend_func = moderngl.ONE, moderngl.ONE
+    else:
+        gl.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+    gl.wireframe = False
+
+
+def set_target(framebuffer: moderngl.Framebuffer, size_px: Size) -> None:
+    """Draw into all of a framebuffer's lower left corner of this size, every channel."""
+    target: Any = framebuffer
+    target.use()
+    target.scissor = None
+    target.viewport = (0, 0, *size_px)
+    target.color_mask = True, True, True, True
