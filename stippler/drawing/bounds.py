@@ -65,7 +65,8 @@ class Bounds:
         """Return whether points lie in the areas given."""
         if len(self._outlines) == 1:
             return self._holds(0, points) & (area == 0)
-        return np.asarray(self.area_at(points) == area)
+        same: NDArray[np.bool_] = self.area_at(points) == area
+        return same
 
     def _holds(self, k: int, points: Points) -> NDArray[np.bool_]:
         box = self._boxes[k]

@@ -13,7 +13,8 @@ from stippler.drawing.history import BUDGET_BYTES, History
 from stippler.drawing.index import DotIndex
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.run import Run
-from stippler.drawing.store import DotStore, Rows
+from stippler.drawing.store import DotStore, Rows, union
+from stippler.kernels.merging import merge_positions
 
 _MOST_PARTS = 256
 
@@ -135,7 +136,7 @@ class Editing:
         if not len(rows):
             return
         stroke = self._in_stroke()
-        rows = np.unique(rows)
+        rows = union([rows], len(self.dots))
         ids = self.dots.id[rows]
         touched = stroke.remove(rows)
         self.drawing.dots = self.dots
@@ -197,17 +198,23 @@ class Editing:
         run = self._run
         if run is None:
             return 0
-        rows = self._store.rows(run.ids)
-        there = np.flatnonzero(rows >= 0)
-        kept = self._edited[run.ids[there]] <= run.base
-        kept &= ~self.dots.fixed[rows[there]]
-        which = there[kept]
-        rows = rows[which]
-        new = np.ascontiguousarray(position_mm[which])
-        self._store.write("position_mm", rows, new)
-        run.after[which] = new
-        self._note(rows, None, moved=True)
-        return len(rows)
+        result = np.ascontiguousarray(position_mm, np.float64)
+        if result.shape != run.after.shape:
+            raise ValueError("the result is not one of this run")
+        rows = np.empty(len(run.ids), np.int64)
+        n = merge_positions(
+            run.ids,
+            result,
+            self._store.row_of_id,
+            self._edited,
+            run.base,
+            self.dots.fixed,
+            self.dots.position_mm,
+            run.after,
+            rows,
+        )
+        self._note(rows[:n], None, moved=True)
+        return n
 
     def end_run(self) -> None:
         """End the run; it is a step of the history, if it has changed anything."""
@@ -223,8 +230,8 @@ class Editing:
         self._changed, self._all_changed = [], False
         if everything:
             return None
-        rows = np.unique(np.concatenate(parts)) if parts else np.empty(0, np.int64)
-        return rows[rows < len(self.dots)]
+        n = len(self.dots)
+        return union([rows[rows < n] for rows in parts], n)
 
     def _apply(self, edit: Edit) -> None:
         rows = self._store.apply(edit)

@@ -39,15 +39,17 @@ class DotIndex:
         self._size_mm = size_mm
         self._links = np.empty((0, 3), np.int32)
         self._out = np.empty(_SPARE, np.int64)
-        self.rebuild(position_mm)
+        self._stale = False
+        self._rebuild(position_mm)
 
     @property
     def n_bytes(self) -> int:
         """Memory it takes."""
         return self._links.nbytes + self._head.nbytes + self._out.nbytes
 
-    def rebuild(self, position_mm: Positions) -> None:
+    def _rebuild(self, position_mm: Positions) -> None:
         """Begin anew with cells of a fitting size."""
+        self._stale = False
         n = len(position_mm)
         width, height = self._size_mm
         side = math.sqrt(width * height * DOTS_PER_CELL / max(n, 64))
@@ -62,13 +64,18 @@ class DotIndex:
         link_all(position_mm, self._frame, self._head, self._links)
 
     def update(self, rows: Rows, position_mm: Positions) -> None:
-        """Take note of dots that moved, came (at the end) or went (rows beyond the end)."""
+        """Take note of dots that moved, came (at the end) or went (rows beyond the end).
+
+        After large changes the next query begins anew.
+        """
+        if self._stale:
+            return
         n = len(position_mm)
         if (
             len(rows) > 0.3 * n + 64
             or not self._n_built <= 4 * n + 256 <= 16 * self._n_built + 1024
         ):
-            self.rebuild(position_mm)
+            self._stale = True
             return
         if n > len(self._links):
             more = np.full((n + n // 4 + _SPARE, 3), -1, np.int32)
@@ -78,15 +85,16 @@ class DotIndex:
 
     def in_box(self, box: tuple[float, float, float, float], position_mm: Positions) -> Rows:
         """Return the rows of the dots in a closed box x0, y0, x1, y1; sorted."""
-        n = rows_in_box(*box, position_mm, self._frame, self._head, self._links, self._out)
+        lists = self._lists(position_mm)
+        n = rows_in_box(*box, *lists, self._out)
         if n > len(self._out):
             self._out = np.empty(2 * n, np.int64)
-            rows_in_box(*box, position_mm, self._frame, self._head, self._links, self._out)
+            rows_in_box(*box, *lists, self._out)
         return np.sort(self._out[:n])
 
     def nearest(self, x: float, y: float, reach_mm: float, position_mm: Positions) -> int | None:
         """Return the row of the dot nearest to a point within a reach."""
-        row = nearest_row(x, y, reach_mm, position_mm, self._frame, self._head, self._links)
+        row = nearest_row(x, y, reach_mm, *self._lists(position_mm))
         return None if row < 0 else row
 
     def nearest_distances(
@@ -94,8 +102,7 @@ class DotIndex:
     ) -> NDArray[np.float64]:
         """Return how far each row's nearest neighbour is; `reach_mm` where none is nearer."""
         out = np.empty(len(rows))
-        args = (position_mm, self._frame, self._head, self._links)
-        nearest_distances(rows, reach_mm, *args, out)
+        nearest_distances(rows, reach_mm, *self._lists(position_mm), out)
         return out
 
     def apart(
@@ -103,6 +110,13 @@ class DotIndex:
     ) -> NDArray[np.bool_]:
         """Return which points keep a distance to all dots and to the points kept before them."""
         kept = np.empty(len(points), np.bool_)
-        args = (position_mm, self._frame, self._head, self._links)
-        keep_apart(points, distance_mm, *args, kept)
+        keep_apart(points, distance_mm, *self._lists(position_mm), kept)
         return kept
+
+    def _lists(
+        self, position_mm: Positions
+    ) -> tuple[Positions, NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+        """Return what the kernels ask, up to date."""
+        if self._stale:
+            self._rebuild(position_mm)
+        return position_mm, self._frame, self._head, self._links

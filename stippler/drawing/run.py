@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from stippler.drawing.dots import Dots
 from stippler.drawing.edit import Change, Edit, Placed, Shift
 from stippler.drawing.history import Step

@@ -61,6 +61,11 @@ class DotStore:
         """Memory it takes, spare room included."""
         return sum(room.nbytes for room in self._room.values()) + self._row_of.nbytes
 
+    @property
+    def row_of_id(self) -> NDArray[np.int32]:
+        """The row of each id, `GONE` where it is not there; to be read only."""
+        return self._row_of
+
     def rows(self, ids: NDArray[np.int64]) -> Rows:
         """Return the rows of ids; `GONE` for dots that are not there."""
         out = np.full(len(ids), GONE, np.int64)
@@ -110,9 +115,11 @@ class DotStore:
 
         Rows at and beyond the new number of dots are among them.
         """
-        touched = [np.empty(0, np.int64)]
+        touched: list[Rows] = []
+        most = len(self)
         if len(edit.removed) or len(edit.inserted) or len(edit.shifted.ids):
             n_after = len(self) - len(edit.removed) + len(edit.inserted)
+            most = max(n_after, most)
             self._row_of[edit.removed.dots.id] = GONE
             if n_after > len(self):
                 self._grow(n_after)
@@ -124,7 +131,7 @@ class DotStore:
             rows = self.rows(change.ids)
             self.write(name, rows, change.after)
             touched.append(rows)
-        return np.unique(np.concatenate(touched)) if len(touched) > 2 else touched[-1]
+        return union(touched, most)
 
     def _move(self, shift: Shift) -> None:
         if not len(shift.ids):
@@ -159,3 +166,11 @@ class DotStore:
 
     def _views(self, n: int) -> Dots:
         return Dots(**{name: room[:n] for name, room in self._room.items()})  # type: ignore[arg-type]
+
+
+def union(parts: list[Rows], n: int) -> Rows:
+    """Return the rows below n that are in any part; sorted, each once."""
+    mask = np.zeros(n, np.bool_)
+    for rows in parts:
+        mask[rows] = True
+    return np.flatnonzero(mask)

@@ -128,23 +128,44 @@ def keep_apart(
                 break
 
 
+@inline
+def _nearest_d2_in_ring(
+    row: int, ring: int, ix: int, iy: int, best: float, xy: F8, frame: F8, head: I4, links: I4
+) -> float:
+    """Return the squared distance to the nearest other dot in the cells at distance `ring`."""
+    x, y = xy[row, 0], xy[row, 1]
+    columns, rows = int(frame[3]), int(frame[4])
+    for j in range(max(iy - ring, 0), min(iy + ring, rows - 1) + 1):
+        step = 1 if j == iy - ring or j == iy + ring else max(2 * ring, 1)
+        for i in range(ix - ring, ix + ring + 1, step):
+            if 0 <= i < columns:
+                other = head[j * columns + i]
+                while other >= 0:
+                    if other != row:
+                        best = min(best, (xy[other, 0] - x) ** 2 + (xy[other, 1] - y) ** 2)
+                    other = links[other, 0]
+    return best
+
+
 @kernel
 def nearest_distances(
     rows: I8, reach: float, xy: F8, frame: F8, head: I4, links: I4, out: F8
 ) -> None:
     """Write the distance of each row's dot to the nearest other; `reach` where none is nearer."""
+    side = 1.0 / frame[2]
+    most = int(max(frame[3], frame[4]))
     for k in range(len(rows)):
         x, y = xy[rows[k], 0], xy[rows[k], 1]
+        ix = _cell_of(x, frame[0], frame[2], frame[3])
+        iy = _cell_of(y, frame[1], frame[2], frame[4])
+        to_wall = min(
+            min(x - frame[0] - ix * side, (ix + 1) * side + frame[0] - x),
+            min(y - frame[1] - iy * side, (iy + 1) * side + frame[1] - y),
+        )
         best = reach * reach
-        j0 = _cell_of(y - reach, frame[1], frame[2], frame[4])
-        j1 = _cell_of(y + reach, frame[1], frame[2], frame[4])
-        i0 = _cell_of(x - reach, frame[0], frame[2], frame[3])
-        i1 = _cell_of(x + reach, frame[0], frame[2], frame[3])
-        for j in range(j0, j1 + 1):
-            for i in range(i0, i1 + 1):
-                row = head[j * int(frame[3]) + i]
-                while row >= 0:
-                    if row != rows[k]:
-                        best = min(best, (xy[row, 0] - x) ** 2 + (xy[row, 1] - y) ** 2)
-                    row = links[row, 0]
+        for ring in range(most + 1):
+            best = _nearest_d2_in_ring(rows[k], ring, ix, iy, best, xy, frame, head, links)
+            seen = to_wall + ring * side
+            if seen > 0.0 and best <= seen * seen:
+                break
         out[k] = math.sqrt(best)

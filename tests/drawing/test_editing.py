@@ -148,13 +148,12 @@ class EditingMachine(RuleBasedStateMachine):
         while editing.history.n_done > self.at:
             editing.undo()
         assert same(editing.dots, start)
-        while editing.redo():
-            pass
-        assert editing.history.n_done == n_done
-        assert same(editing.dots, end)
-        while editing.history.n_done > self.at:
-            editing.undo()
         del self.states[self.at + 1 :]
+        while editing.redo():
+            self.states.append(editing.dots.copy())
+            self.at += 1
+        assert editing.history.n_done == n_done == self.at
+        assert same(editing.dots, end)
 
     @invariant()
     def whole(self):

@@ -1,0 +1,89 @@
+"""Voronoi cells of some dots of a large drawing, at a cost that depends on those dots alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from stippler.drawing.editing import Editing
+from stippler.drawing.reference import Reference
+from stippler.drawing.store import Rows
+from stippler.stippling.relax import DensityField, Relaxation
+
+Floats = NDArray[np.float64]
+
+MARGIN_SPACINGS = 4.0
+"""How far around the dots their neighbours are taken in, in mean spacings."""
+
+
+def centroids_of(editing: Editing, rows: Rows, reference: Reference | None = None) -> Floats:
+    """Return the centroids of the dots' cells among all dots around; weighted by a reference.
+
+    Dots whose cell is not known, as beyond their area's border, keep their place.
+    """
+    out = np.array(editing.dots.position_mm[rows])
+    for engine, mine, which in _engines(editing, rows, reference):
+        engine.step()
+        out[which] = engine.points[mine]
+    return out
+
+
+def areas_of(editing: Editing, rows: Rows) -> Floats:
+    """Return the areas of the dots' cells among all dots around, mm²; 0 where it is not known."""
+    out = np.zeros(len(rows))
+    for engine, mine, which in _engines(editing, rows, None):
+        out[which] = engine.cell_areas()[mine]
+    return out
+
+
+def _engines(
+    editing: Editing, rows: Rows, reference: Reference | None
+) -> Iterator[tuple[Relaxation, NDArray[np.bool_], NDArray[np.intp]]]:
+    """Yield for each area a relaxation of its dots, which of its dots are asked for, and where."""
+    if not len(rows):
+        return
+    around = _box_around(editing, editing.dots.position_mm[rows])
+    near = editing.in_box(around)
+    near_area = editing.dots.area[near]
+    for k in np.unique(editing.dots.area[rows]):
+        outline = editing.drawing.areas[int(k)].outline_mm
+        polygon = shapely.clip_by_rect(outline, *around)
+        if polygon.is_empty or polygon.geom_type not in ("Polygon", "MultiPolygon"):
+            continue
+        own = near[near_area == k]
+        xy = editing.dots.position_mm[own]
+        own = own[shapely.intersects_xy(polygon, xy[:, 0], xy[:, 1])]
+        mine = np.isin(own, rows, assume_unique=True)
+        if mine.any():
+            points = editing.dots.position_mm[own]
+            density = _density(reference, around)
+            engine = Relaxation(points, polygon, fixed=~mine, density=density)
+            yield engine, mine, np.searchsorted(rows, own[mine])
+
+
+def _box_around(editing: Editing, position_mm: Floats) -> tuple[float, float, float, float]:
+    (x0, y0), (x1, y1) = position_mm.min(axis=0), position_mm.max(axis=0)
+    page = editing.drawing.page
+    whole = math.sqrt(page.width_mm * page.height_mm / len(editing.dots))
+    size = max((x1 - x0) * (y1 - y0), 0.0)
+    spacing = math.sqrt(size / len(position_mm)) if len(position_mm) > 8 else whole
+    margin = MARGIN_SPACINGS * max(spacing, 1e-6 * page.width_mm)
+    return float(x0 - margin), float(y0 - margin), float(x1 + margin), float(y1 + margin)
+
+
+def _density(
+    reference: Reference | None, box: tuple[float, float, float, float]
+) -> DensityField | None:
+    """Cut the weight out of the reference: its square, since dots settle at the weight's root."""
+    if reference is None:
+        return None
+    h, w = reference.darkness.shape
+    side = reference.pixel_mm
+    i0, j0 = (min(max(math.floor(v / side), 0), n - 1) for v, n in ((box[0], w), (box[1], h)))
+    i1, j1 = (min(max(math.ceil(v / side), 1), n) for v, n in ((box[2], w), (box[3], h)))
+    part = reference.darkness[j0 : max(j1, j0 + 1), i0 : max(i1, i0 + 1)]
+    return DensityField(np.square(part), side, (i0 * side, j0 * side))

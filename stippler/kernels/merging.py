@@ -1,0 +1,41 @@
+"""Bringing a worker's result to the dots that it may still move."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.jit import kernel
+
+F8 = NDArray[np.float64]
+I4 = NDArray[np.int32]
+I8 = NDArray[np.int64]
+
+
+@kernel
+def merge_positions(
+    ids: I8,
+    result: F8,
+    row_of_id: I4,
+    edited: I4,
+    base: int,
+    fixed: NDArray[np.bool_],
+    position: F8,
+    after: F8,
+    rows: I8,
+) -> int:
+    """Move the free dots that are there and have not been edited since `base`.
+
+    Writes their places to `position` (by row) and `after` (by the order of `ids`), and their rows
+    to `rows`; returns how many there are.
+    """
+    n = 0
+    for k in range(len(ids)):
+        row = row_of_id[ids[k]]
+        if row < 0 or edited[ids[k]] > base or fixed[row]:
+            continue
+        position[row, 0] = after[k, 0] = result[k, 0]
+        position[row, 1] = after[k, 1] = result[k, 1]
+        rows[n] = row
+        n += 1
+    return n
