@@ -5,12 +5,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from stippler.errors import DisplayError
 from stippler.kernels.cache import all_digest, cache_root
+
+if TYPE_CHECKING:
+    from stippler.drawing.drawing import Drawing
 
 
 def is_warm() -> bool:
@@ -35,20 +42,36 @@ def _mark() -> Path:
 
 
 def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
-    """Name what compiles, in the order a first drawing needs it."""
+    """Name what compiles, in the order a first drawing needs it, and how to make it compile."""
     import numpy as np
 
+    from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from stippler.stippling.stipple import Plan, stages
+    from stippler.stippling.stipple import FIRST_DOTS, Plan, stages
 
     ramp = np.linspace(0, 1, 64 * 64, dtype=np.float32).reshape(64, 64)
     reference = Reference(ramp, 20.0)
 
-    def draw(**options: object) -> Callable[[], object]:
-        plan = Plan(n_dots=200, iterations=3, **options)  # type: ignore[arg-type]
-        return lambda: list(stages(reference, plan))
+    def draw(**options: Any) -> Drawing:
+        *_, last = stages(reference, Plan(n_dots=300, iterations=3, **options))
+        return Drawing.from_reference(reference, last.position_mm, last.radius_mm)
 
-    yield "first dots, relaxation, tone", draw()
+    yield "relaxation and tone", draw
+    for method in FIRST_DOTS:
+        yield f"first dots: {method}", partial(draw, first_dots=method)
+    yield "files", lambda: _write(draw())
+
+
+def _write(drawing: Drawing) -> None:
+    """Write round and deformed dots in every way there is."""
+    from stippler.files.svg import svg_chunks
+    from stippler.headless import render_image
+
+    for elongation, roughness in ((1.0, 0.0), (2.0, 0.5)):
+        drawing.dots.elongation[:], drawing.dots.roughness[:] = elongation, roughness
+        list(svg_chunks(drawing))
+        with contextlib.suppress(DisplayError):  # without OpenGL nothing needs those kernels
+            render_image(drawing, px_per_mm=2.0)
 
 
 def _main() -> None:

@@ -23,6 +23,8 @@ _BUTTONS = {
     "middle": glfw.MOUSE_BUTTON_MIDDLE,
 }
 _PATIENCE_S = 60.0
+_SOON_S = 0.2
+_SETTLED = 24  # frames; work that goes on is not waited for
 
 
 class Host:
@@ -44,10 +46,13 @@ class Host:
     # --- time -------------------------------------------------------------------------------
 
     def settle(self) -> None:
-        """Go on until nothing is left to draw for what has happened so far."""
-        for _ in range(500):
-            if not self._step(0.0):
+        """Go on until what has happened so far has been drawn."""
+        for _ in range(_SETTLED):
+            if self._step(0.0):
+                continue
+            if self._editor.sleep_s() > _SOON_S:
                 return
+            self._step(_SOON_S)
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Go on until something is true.
@@ -123,9 +128,10 @@ class Host:
 
     def fill(self, label: str, text: str) -> None:
         """Replace what stands in a field, by its label, and press Enter."""
-        self.click(label)
-        self.press()  # the second press of a double click marks all
-        self.release()
+        self.move(*self.place(label))
+        for _ in range(3):  # the third click marks the line
+            self.press()
+            self.release()
         self.settle()
         self.type(text)
         self.key("enter")

@@ -37,6 +37,11 @@ class Widgets:
         """Where the controls begin to the right of their labels."""
         return LABEL_WIDTH * self.scale
 
+    @property
+    def gap(self) -> float:
+        """Between two controls side by side."""
+        return 8.0 * self.scale
+
     # --- text -------------------------------------------------------------------------------
 
     def heading(self, text: str) -> None:
@@ -178,7 +183,7 @@ class Widgets:
         imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, 0.0))
         imgui.progress_bar(share, (-1.0, 5.0 * self.scale), "")
         imgui.pop_style_var()
-        self.caption(text)
+        self.caption(text or " ")
 
     def rule(self) -> None:
         """Draw a line between sections."""

@@ -99,7 +99,9 @@ def test_the_wheel_zooms_where_the_pointer_is() -> None:
 
 _EVENTS = st.one_of(
     st.builds(Moved, st.floats(-50, 900), st.floats(-50, 700)),
-    st.builds(Pressed, st.sampled_from([LEFT, MIDDLE, RIGHT]), st.floats(0, 800), st.floats(0, 600)),
+    st.builds(
+        Pressed, st.sampled_from([LEFT, MIDDLE, RIGHT]), st.floats(0, 800), st.floats(0, 600)
+    ),
     st.builds(
         Released, st.sampled_from([LEFT, MIDDLE, RIGHT]), st.floats(0, 800), st.floats(0, 600)
     ),

@@ -26,6 +26,7 @@ _STAGES = {
     "tone": "matching the tone",
     "done": "done",
 }
+_OUTCOMES = {"empty": "", "done": "done", "stopped": "stopped", "failed": "failed"}
 
 
 def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
@@ -125,26 +126,28 @@ def _draw_seed(widgets: Widgets, session: Session, changes: dict[str, Any]) -> N
 
 
 def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> None:
-    gap = 8.0 * widgets.scale
-    width = (imgui.get_content_region_avail().x - gap) / 2
-    if session.phase == "running":
-        if widgets.button("Pause", commands["work.pause"].hint, icon=ICON_PAUSE, width=width):
-            session.pause()
-    elif session.phase == "paused":
-        if widgets.button(
-            "Resume", commands["work.pause"].hint, icon=ICON_PLAY, width=width, primary=True
-        ):
-            session.resume()
-    elif widgets.button(
-        "Start",
+    label = "Restart" if session.busy else "Start"
+    if widgets.button(
+        label,
         f"{commands['work.start'].hint}: stipple the picture with the values above.",
         icon=ICON_PLAY,
-        width=width,
-        primary=True,
-        enabled=session.source is not None,
+        width=-1.0,
+        primary=not session.busy or session.outdated,
+        enabled=session.source is not None or session.busy,
     ):
         session.start()
-    imgui.same_line(0.0, gap)
+    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
+    paused = session.phase == "paused"
+    if widgets.button(
+        "Resume" if paused else "Pause",
+        commands["work.pause"].hint,
+        icon=ICON_PLAY if paused else ICON_PAUSE,
+        width=width,
+        primary=paused,
+        enabled=session.busy,
+    ):
+        commands["work.pause"].run()
+    imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Stop",
         "End the work; the dots that are there stay.",
@@ -156,15 +159,18 @@ def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> Non
 
 
 def _draw_progress(widgets: Widgets, session: Session) -> None:
+    """Draw the bar and its line; they keep their room while there is nothing to tell."""
     if session.busy:
         share = session.done / session.total if session.total else -imgui.get_time()
-        text = _STAGES.get(session.stage, session.stage)
-        if session.stage == "relax":
-            text = f"{text}, step {session.done} of {session.total}"
-        widgets.progress(share, f"{text} (paused)" if session.phase == "paused" else text)
-        if session.outdated and widgets.button(
-            "Restart", "Begin again with the values above.", width=-1.0
-        ):
-            session.start()
+        widgets.progress(share, _progress_text(session))
     elif session.outdated and session.n_dots:
-        widgets.caption("Start again to use the changed values.")
+        widgets.progress(0.0, "values changed; start to use them")
+    else:
+        widgets.progress(1.0 if session.phase == "done" else 0.0, _OUTCOMES[session.phase])
+
+
+def _progress_text(session: Session) -> str:
+    text = _STAGES.get(session.stage, session.stage)
+    if session.stage == "relax":
+        text = f"{text}, step {session.done:,} of {session.total:,}"
+    return f"{text} (paused)" if session.phase == "paused" else text

@@ -39,10 +39,10 @@ def draw_notice(widgets: Widgets, messages: Messages, canvas: Rect) -> None:
     imgui.pop_text_wrap_pos()
     if imgui.is_window_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         messages.dismiss()
+    at, size = imgui.get_window_pos(), imgui.get_window_size()
+    widgets.marks["notice"] = (at.x, at.y, at.x + size.x, at.y + size.y)
     imgui.end()
     imgui.pop_style_var()
-    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    widgets.marks["notice"] = (low.x, low.y, high.x, high.y)
 
 
 def draw_invitation(widgets: Widgets, canvas: Rect) -> None:

@@ -23,7 +23,7 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
     """Draw the section."""
     widgets.heading("Picture")
     _draw_name(widgets, session)
-    width = (imgui.get_content_region_avail().x - 8 * widgets.scale) / 2
+    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
     if widgets.button(
         "Open",
         f"{commands['file.open'].hint}; or drop one on the window.",
@@ -31,7 +31,7 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
         width=width,
     ):
         commands["file.open"].run()
-    imgui.same_line()
+    imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Export",
         f"{commands['file.export'].hint}: SVG, PNG or CSV.",
@@ -53,7 +53,8 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
 
 def _draw_name(widgets: Widgets, session: Session) -> None:
     if not session.name:
-        widgets.caption("Nothing is open. Drop a picture on the window.")
+        imgui.text_colored((*widgets.theme.faint, 1.0), "No picture")
+        widgets.caption("drop one on the window")
         return
     imgui.text_unformatted(_shortened(session.name, imgui.get_content_region_avail().x))
     widgets.tip(session.name)

@@ -13,14 +13,14 @@ from stippler.ui.widgets import Widgets
 def draw_view(widgets: Widgets, look: Look, commands: Commands) -> None:
     """Draw the section."""
     widgets.heading("View")
-    width = (imgui.get_content_region_avail().x - 8 * widgets.scale) / 2
+    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
     for name, label, icon, tip in (
         ("view.fit", "Fit", ICON_FIT, "show the whole page."),
         ("view.print_size", "Print size", ICON_PRINT, "as large as on paper."),
     ):
         if widgets.button(label, f"{commands[name].hint}: {tip}", icon=icon, width=width):
             commands[name].run()
-        imgui.same_line()
+        imgui.same_line(0.0, widgets.gap)
     imgui.new_line()
     look.reference_shown = widgets.check(
         "Show the picture", look.reference_shown, f"{commands['view.reference'].hint}."

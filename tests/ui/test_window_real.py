@@ -1,0 +1,225 @@
+"""A real window under Xvfb, driven by a real mouse."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import ImageGrab
+
+from stippler.app import App
+from stippler.stippling.stipple import Plan
+from stippler.ui.host import Host
+from stippler.ui.theme import LIGHT, Colour
+
+pytestmark = pytest.mark.window
+
+SIZE = (1280, 800)
+CANVAS = (296, 0, 1280, 771)
+_PATIENCE_S = 60.0
+
+
+def until(condition: Callable[[], bool], what: str) -> None:
+    deadline = time.monotonic() + _PATIENCE_S
+    while not condition():
+        assert time.monotonic() < deadline, f"{what} did not come true"
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[str]:
+    """An X server on a display number that it finds free."""
+    reads, writes = os.pipe()
+    screen = f"{SIZE[0]}x{SIZE[1]}x24"
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writes), "-screen", "0", screen, "-nolisten", "tcp"],
+        pass_fds=[writes],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writes)
+    with os.fdopen(reads) as told:
+        number = told.readline().strip()
+    assert number, "Xvfb did not start"
+    try:
+        yield f":{number}"
+    finally:
+        server.terminate()
+        server.wait()
+
+
+@pytest.fixture(scope="module")
+def places() -> Iterator[dict[str, tuple[float, float]]]:
+    """Where the controls are, found in the same editor without a display."""
+    app = App(Plan(), tone="linear", width_mm=148.0, size=SIZE, offscreen=True)
+    try:
+        host = Host(app.window, app.editor, app.step)
+        yield {label: host.place(label) for label in app.editor.widgets.marks}
+    finally:
+        app.close()
+
+
+class Desk:
+    """The editor as a process of its own, and hands on it."""
+
+    def __init__(self, display: str, *arguments: str) -> None:
+        self._display = display
+        self._env = {**os.environ, "DISPLAY": display}
+        self._env.pop("WAYLAND_DISPLAY", None)
+        self._env.pop("STIPPLER_SCALE", None)
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", "from stippler.cli import main; main()", *arguments],
+            env=self._env,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def xdotool(self, *words: object) -> str:
+        done = subprocess.run(
+            ["xdotool", *map(str, words)],
+            env=self._env,
+            check=False,
+            capture_output=True,
+            text=True,
+        )
+        return done.stdout.strip()
+
+    def shot(self) -> np.ndarray:
+        return np.asarray(ImageGrab.grab(xdisplay=self._display).convert("RGB"))
+
+    def ink(self) -> np.ndarray:
+        x0, y0, x1, y1 = CANVAS
+        return self.shot()[y0:y1, x0:x1].mean(axis=2) < 100
+
+    def has(self, place: tuple[float, float], colour: Colour) -> bool:
+        x, y = (round(v) for v in place)
+        seen = self.shot()[y, x - 45] / 255.0  # left of the label
+        return bool(np.abs(seen - np.array(colour)).max() < 0.03)
+
+    def title(self) -> str:
+        window = self.xdotool("search", "--name", "Stippler").partition("\n")[0]
+        return self.xdotool("getwindowname", window) if window else ""
+
+    def focus(self) -> None:
+        window = self.xdotool("search", "--name", "Stippler").partition("\n")[0]
+        self.xdotool("windowfocus", "--sync", window)
+
+    def quit(self) -> tuple[int, str]:
+        self.focus()
+        self.xdotool("key", "ctrl+q")
+        _, errors = self.process.communicate(timeout=_PATIENCE_S)
+        return self.process.returncode, errors
+
+
+@pytest.fixture
+def start(display: str) -> Iterator[Callable[..., Desk]]:
+    desks: list[Desk] = []
+
+    def begin(*arguments: str) -> Desk:
+        desks.append(Desk(display, *arguments))
+        return desks[-1]
+
+    yield begin
+    for desk in desks:
+        if desk.process.poll() is None:
+            desk.process.kill()
+        desk.process.communicate()
+
+
+def test_wheel_and_middle_button_move_the_page(
+    start: Callable[..., Desk], places: dict[str, tuple[float, float]], picture: Path
+) -> None:
+    desk = start(str(picture), "--dots", "200", "--iterations", "3", "--tone", "linear")
+    until(lambda: desk.title() == "disc.png – Stippler", "the title")
+    until(lambda: desk.has(places["Start"], LIGHT.accent), "the end of the work")
+    middle = ((CANVAS[0] + CANVAS[2]) // 2, (CANVAS[1] + CANVAS[3]) // 2)
+    fitted = desk.ink().sum()
+    assert fitted > 1000
+    desk.xdotool("mousemove", *middle)
+    for _ in range(3):
+        desk.xdotool("click", 5)  # the wheel towards the person
+    until(lambda: 0.25 < desk.ink().sum() / fitted < 0.45, "the smaller page")  # 1.2**-6 = 0.33
+    before = np.argwhere(desk.ink()).mean(axis=0)
+    desk.xdotool("mousedown", 2)
+    desk.xdotool("mousemove_relative", "--sync", "--", 60, -40)
+    desk.xdotool("mouseup", 2)
+
+    def moved() -> bool:
+        dy, dx = np.argwhere(desk.ink()).mean(axis=0) - before
+        return abs(dx - 60) < 2 and abs(dy + 40) < 2
+
+    until(moved, "the moved page")
+    desk.xdotool("mousemove", *places["Fit"], "click", 1)
+    until(lambda: abs(desk.ink().sum() / fitted - 1) < 0.02, "the fitted page")
+    assert desk.quit() == (0, "")
+
+
+def test_stop_is_clicked_while_work_runs(
+    start: Callable[..., Desk], places: dict[str, tuple[float, float]], picture: Path
+) -> None:
+    desk = start(str(picture), "--dots", "200", "--iterations", "100000")
+    until(lambda: desk.title() == "disc.png – Stippler", "the title")
+    until(lambda: desk.ink().sum() > 1000, "the first dots")
+    assert not desk.has(places["Start"], LIGHT.accent)
+    desk.xdotool("mousemove", *places["Stop"], "click", 1)
+    until(lambda: desk.has(places["Start"], LIGHT.accent), "the stop")
+    assert desk.ink().sum() > 1000
+    assert desk.quit() == (0, "")
+
+
+def test_the_window_is_closed_while_work_runs(start: Callable[..., Desk], picture: Path) -> None:
+    desk = start(str(picture), "--dots", "200", "--iterations", "100000")
+    until(lambda: desk.title() == "disc.png – Stippler", "the title")
+    until(lambda: desk.ink().sum() > 1000, "the first dots")
+    assert desk.quit() == (0, "")
+
+
+def test_no_display_is_one_line(picture: Path) -> None:
+    env = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    for display in ("", ":987"):
+        done = subprocess.run(
+            [sys.executable, "-c", "from stippler.cli import main; main()", str(picture)],
+            env={**env, "DISPLAY": display} if display else env,
+            capture_output=True,
+            text=True,
+            timeout=_PATIENCE_S,
+            check=False,
+        )
+        assert done.returncode == 1
+        (line,) = done.stderr.splitlines()
+        assert "display" in line
+        assert display in line
+        assert "stippler render" in line
+
+
+def test_no_opengl_is_one_line(picture: Path) -> None:
+    reads, writes = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writes), "-extension", "GLX", "-nolisten", "tcp"],
+        pass_fds=[writes],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writes)
+    try:
+        with os.fdopen(reads) as told:
+            display = f":{told.readline().strip()}"
+        done = subprocess.run(
+            [sys.executable, "-c", "from stippler.cli import main; main()", str(picture)],
+            env={**os.environ, "DISPLAY": display},
+            capture_output=True,
+            text=True,
+            timeout=_PATIENCE_S,
+            check=False,
+        )
+    finally:
+        server.terminate()
+        server.wait()
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert "OpenGL 3.3" in line
+    assert "apt install" in line
