@@ -64,7 +64,7 @@ class Bounds:
     def _own(self, points: Points, area: NDArray[np.int32]) -> NDArray[np.bool_]:
         """Return whether points lie in the areas given."""
         if len(self._outlines) == 1:
-            return self._holds(0, points) & (area == 0)
+            return np.asarray(self._holds(0, points) & (area == 0))
         same: NDArray[np.bool_] = self.area_at(points) == area
         return same
 
