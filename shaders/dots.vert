@@ -40,15 +40,16 @@ void main() {
     deform(a_dot.xy, radius_mm, shape);
     vec2 center = u_page_to_px * (a_dot.xy - u_center_mm) + u_middle_px;
     float opacity;
+    float paling = shared_opacity(shape.share, radius_mm * u_px_per_mm);
 #ifdef ROUND
     vec2 axes = drawn_axes(radius_mm * u_px_per_mm, 1.0, opacity);
     vec2 half_size = axes + 0.5;
-    v_dot = vec4(center, axes.x, opacity);
+    v_dot = vec4(center, axes.x, opacity * paling);
 #else
     vec2 axes = drawn_axes(radius_mm * u_px_per_mm, shape.elongation, opacity);
     vec2 along = u_page_to_px * vec2(cos(shape.angle), sin(shape.angle)) / u_px_per_mm;
     vec2 across = u_page_to_px * vec2(-sin(shape.angle), cos(shape.angle)) / u_px_per_mm;
-    v_dot = vec4(center, opacity, 0.0);
+    v_dot = vec4(center, opacity * paling, 0.0);
     vec2 a = along / axes.x, b = across / axes.y;
     v_to_unit = vec4(a.x, b.x, a.y, b.y);
     float bulge = 1.0;

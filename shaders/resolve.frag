@@ -1,18 +1,15 @@
 // Lays the ink gathered from all dots on the page, in encoded (display) colour.
 #version 330 core
-#include "lib/ink.glsl"
 
 uniform sampler2D u_ink;
 uniform int u_margin_px;   // of the gathered ink around the picture
-uniform float u_crowding;  // 0: every dot is seen; towards 1: many dots share a pixel
 uniform vec3 u_ink_color;
 uniform vec4 u_ground;     // what lies under the ink; alpha 0: whatever the target holds
 
 out vec4 o_color;
 
 void main() {
-    float sum = texelFetch(u_ink, ivec2(gl_FragCoord.xy) + u_margin_px, 0).r;
-    float ink = covered(sum, u_crowding);
+    float ink = min(texelFetch(u_ink, ivec2(gl_FragCoord.xy) + u_margin_px, 0).r, 1.0);
     o_color = u_ground.a > 0.0 ? vec4(mix(u_ground.rgb, u_ink_color, ink), 1.0)
                                : vec4(u_ink_color, ink);
 }

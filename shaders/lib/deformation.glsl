@@ -17,6 +17,7 @@ struct Shape {
     float roughness;
     uint seed;
     uint flags;
+    float share; // of the dot's area, counted in the union of all dots
 };
 
 Shape unpack_shape(uvec3 packed_shape) {
@@ -24,7 +25,8 @@ Shape unpack_shape(uvec3 packed_shape) {
     s.elongation = 1.0 + float(packed_shape.x & 0xffffu) * (3.0 / 65535.0);
     s.angle = float(packed_shape.x >> 16u) * (2.0 * PI / 65536.0);
     s.roughness = float(packed_shape.y & 0xffffu) / 65535.0;
-    s.flags = packed_shape.y >> 16u;
+    s.flags = (packed_shape.y >> 16u) & 0xffu;
+    s.share = float(packed_shape.y >> 24u) / 255.0;
     s.seed = packed_shape.z;
     return s;
 }

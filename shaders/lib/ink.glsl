@@ -16,12 +16,10 @@ vec2 drawn_axes(float radius_px, float elongation, out float opacity) {
     return axes * sqrt(1.0 - (ratio + 1.0 / ratio) / (24.0 * area));
 }
 
-// Returns the share of a pixel that dots cover which have `sum` pixels of area in it.
-// Dots do not overlap until they must, so that is the sum; in the dark, relaxed dots overlap as
-// the curve says, which was fitted to drawings (docs/rendering.md). Where pixels are smaller than
-// dots (crowding 0), cutting off at 1 is the union.
-float covered(float sum, float crowding) {
-    float over = max(sum - 0.57, 0.0);
-    float overlapping = sum < 1.17 ? min(sum - 0.7 * over * over * over, 1.0) : 1.0;
-    return mix(min(sum, 1.0), overlapping, crowding);
+// Returns the opacity that a dot gives up for lying on others, where pixels are as large as dots:
+// there a pixel cannot tell ink laid twice from ink laid side by side. `share` is what the dot adds
+// to the union of all; a dot of several pixels keeps its opacity, as ink beyond 1 is cut off.
+float shared_opacity(float share, float radius_px) {
+    if (share >= 1.0) return 1.0;
+    return pow(share, 1.0 / (1.0 + pow(radius_px, 2.5)));
 }

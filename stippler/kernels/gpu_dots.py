@@ -12,13 +12,15 @@ from stippler.kernels.dot_shape import MAX_ELONGATION
 from stippler.kernels.jit import inline, kernel
 from stippler.kernels.pool import run_ranges
 
-N_WORDS = 6  # x, y, radius (float32); elongation and angle, roughness and flags, seed (uint32)
+N_WORDS = 6  # x, y, radius; elongation and angle, roughness, flags and share, seed
 WORD_BYTES = 4
 FIXED, SELECTED = 1, 2
+ROUND_WORDS = (0, 0xFF000000, 0)  # elongation 1, no roughness, no flags, a share of 1
 
 _GRAIN = 16384
 _PER_ELONGATION = 65535.0 / (MAX_ELONGATION - 1.0)
 _PER_TURN = 65536.0
+_WHOLE = np.uint32(0xFF000000)
 
 
 @inline
@@ -35,7 +37,7 @@ def _pack_shape(row, elongation, angle, roughness, seed, flags):
     a = np.uint32(np.int64((turns - math.floor(turns)) * _PER_TURN + 0.5) & 0xFFFF)
     r = np.uint32(roughness * 65535.0 + 0.5)
     row[3] = np.uint32(e | np.uint32(a << np.uint32(16)))
-    row[4] = np.uint32(r | np.uint32(np.uint32(flags) << np.uint32(16)))
+    row[4] = np.uint32(r | np.uint32(np.uint32(flags) << np.uint32(16)) | _WHOLE)
     row[5] = seed
 
 
@@ -84,6 +86,12 @@ def _choose(place, left, top, right, bottom, pad, low, high, out):
                 out[n] = i
                 n += 1
     return n
+
+
+def set_shares(words: NDArray[np.uint32], shares: NDArray[np.float32]) -> None:
+    """Write the shares of dots in the union of all, 0 to 1, to 8 bits."""
+    share = (shares * 255.0 + 0.5).astype(np.uint32) << np.uint32(24)
+    words[:, 4] = words[:, 4] & np.uint32(0xFFFFFF) | share
 
 
 def words(n: int) -> NDArray[np.uint32]:

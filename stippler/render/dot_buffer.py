@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots
 from stippler.kernels import gpu_dots
+from stippler.kernels.overlap import shares_of_union
 
 Origin = tuple[float, float]
 
@@ -29,8 +30,6 @@ class DotBuffer:
         updates they may be wrong towards the costlier side.
     max_radius_mm, max_elongation : float
         At least as large as any dot's.
-    mean_radius_mm : float
-        Of all dots weighted by their areas, as of the last full upload.
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -39,7 +38,7 @@ class DotBuffer:
         self._words = gpu_dots.words(self._room)
         self.gl = ctx.buffer(reserve=self._room * _STRIDE)
         self.n = self.revision = 0
-        self.mean_radius_mm = 0.0
+        self._knows_shares = True
         self._row_of_slot = self._slot_of_row = np.empty(0, np.int64)
         self._forget()
 
@@ -56,8 +55,8 @@ class DotBuffer:
         gpu_dots.pack(dots, origin_mm, flags, self._row_of_slot, self.rows)
         self._forget()
         self.has_flags = bool(flags.any())
+        self._knows_shares = False
         self._learn(dots.radius_mm, dots.elongation, dots.roughness)
-        self.mean_radius_mm = _weighted_mean(dots.radius_mm)
         self._upload()
         return grown
 
@@ -69,12 +68,11 @@ class DotBuffer:
         grown = self._resize(len(position_mm))
         if not same:
             self._order(position_mm, origin_mm)
-            self.rows[:, 3:] = 0
+            self.rows[:, 3:] = gpu_dots.ROUND_WORDS
             self._forget()
         rows = self._row_of_slot
         gpu_dots.pack_places(position_mm, radius_mm, origin_mm, rows, self.rows)
         self.max_radius_mm = float(radius_mm.max(initial=0.0))
-        self.mean_radius_mm = _weighted_mean(radius_mm)
         self._upload()
         return grown
 
@@ -103,6 +101,19 @@ class DotBuffer:
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
         self._upload_runs(slots)
         return False
+
+    def find_shares(self) -> None:
+        """Find how much each dot adds to the union of all; only after a full upload.
+
+        Dots that a brush or a worker moves keep the share they had, so that drawing never waits.
+        """
+        if self._knows_shares:
+            return
+        self._knows_shares = True
+        shares = shares_of_union(self.rows.view(np.float32))
+        if self.n and shares.min() < 1.0:
+            gpu_dots.set_shares(self.rows, shares)
+            self._upload()
 
     def _order(self, position_mm: NDArray[np.float64], origin_mm: Origin) -> None:
         size_mm = (2 * origin_mm[0], 2 * origin_mm[1])
@@ -161,12 +172,6 @@ class DotBuffer:
     def release(self) -> None:
         """Free the GL buffer."""
         self.gl.release()
-
-
-def _weighted_mean(radius: NDArray[np.float32]) -> float:
-    area = np.square(radius)
-    total = float(area.sum(dtype=np.float64))
-    return float(np.dot(area, radius)) / total if total else 0.0
 
 
 def _flags(fixed: NDArray[np.bool_], selected: NDArray[np.bool_]) -> NDArray[np.uint8]:

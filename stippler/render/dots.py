@@ -21,6 +21,7 @@ from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
+_ALONE_PX = 6.0  # dots of this radius need not know of one another
 _MODES = {"all": 1, "selected": 2, "tip": 3}
 
 
@@ -67,6 +68,8 @@ class DotsPass:
         self.n_draw_calls = 0
         if self.buffer.n == 0:
             return
+        if self.buffer.max_radius_mm * camera.px_per_mm < _ALONE_PX:
+            self.buffer.find_shares()
         self._choose(camera, size_px, origin_mm, preview)
         set_state(self._ctx, "add", sprites=True)
         uniforms = _uniforms(camera, whole, origin_mm) | _preview_uniforms(preview, origin_mm)

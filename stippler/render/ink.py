@@ -13,11 +13,6 @@ MARGIN_PX = 40
 """Around the picture, so that sprites whose centre lies outside are drawn too."""
 
 
-def crowding(radius_px: float) -> float:
-    """Return how far a pixel holds many dots rather than part of one; fitted to drawings."""
-    return 0.85 / (1.0 + float((radius_px / 0.95) ** 3.5))
-
-
 class InkTarget:
     """A picture of coverage, added up in floats; a little larger than the frame."""
 
@@ -45,7 +40,6 @@ class InkTarget:
         camera: Camera,
         size_px: Size,
         page_mm: tuple[float, float],
-        mean_radius_mm: float,
         ink: Color,
         ground: Color | None,
     ) -> None:
@@ -60,7 +54,6 @@ class InkTarget:
                 "u_rect_mm": (0.0, 0.0, *page_mm),
                 "u_ink": 0,
                 "u_margin_px": MARGIN_PX,
-                "u_crowding": crowding(mean_radius_mm * camera.px_per_mm),
                 "u_ink_color": ink,
                 "u_ground": (*ground, 1.0) if ground else (0.0, 0.0, 0.0, 0.0),
             }

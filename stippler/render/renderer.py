@@ -124,11 +124,11 @@ class Renderer:
         target.clear(*desk, 1.0)
         # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
         is_bare = not self._shows_reference and camera.rotation_rad == 0.0
-        page_mm, radius_mm = self._page_mm, self._dots.buffer.mean_radius_mm
+        page_mm = self._page_mm
         self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
         if self._shows_reference:
             self._reference.draw(camera, size_px, self._opacity, ink)
-        self._ink.lay(camera, size_px, page_mm, radius_mm, ink, paper if is_bare else None)
+        self._ink.lay(camera, size_px, page_mm, ink, paper if is_bare else None)
         if marks:
             self._dots.draw_marks(camera, size_px, self._origin_mm, self._preview, marks)
         if self._tip:
