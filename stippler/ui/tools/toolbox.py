@@ -193,8 +193,13 @@ class Toolbox:
         if isinstance(self.state, Rest):
             self._last_end = self.state.ended or self._last_end
             self._speed = None
-        was_resized = self.brush is not brush
-        return self.state is before or self.is_busy or was_resized or not isinstance(before, Rest)
+        was_busy = not isinstance(before, Rest)
+        match event:
+            case Pressed(button=button) | Released(button=button):
+                return button == LEFT and (was_busy or self.is_busy)
+            case KeyDown():
+                return was_busy
+        return self.brush is not brush and not isinstance(event, Moved)
 
     def rest(self, t_s: float) -> None:
         """Let time go on within a stroke."""
