@@ -12,11 +12,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import kernel
+from stippler.kernels.jit import inline, kernel
 
 Array = NDArray[Any]
 
 USED = np.float32(-1.0)
+
+
+@kernel
+def fill_cells(density: Array, s: int, charge: Array) -> None:
+    """Spread the dots that each pixel asks for evenly over its s by s cells."""
+    h, w = density.shape
+    share = np.float32(1.0 / (s * s))
+    for y in range(h):
+        for k in range(s):
+            row = charge[y * s + k]
+            for x in range(w):
+                c = density[y, x] * share
+                for j in range(s):
+                    row[x * s + j] = c
+
+
+@inline
+def _pick(chance: int, n: int, options: int) -> int:
+    """Choose one of some options, as if by chance (the finaliser of splitmix64)."""
+    z = np.uint64(n + 1) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(chance)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    z ^= z >> np.uint64(31)
+    return int((z >> np.uint64(33)) % np.uint64(options))
 
 
 @kernel
@@ -27,7 +51,7 @@ def grow(
     stop: int,
     dy: Array,
     dx: Array,
-    pulse: float,
+    chance: int,
     points: Array,
     areas: Array,
     max_points: int,
@@ -44,8 +68,10 @@ def grow(
         Next seed, dots so far, and the charge taken that no dot stands for yet; updated.
     stop : int
         Seed before which to stop.
-    dy, dx : (k,) int16
-        Offsets from the seed in order of growth.
+    dy, dx : (t, k) int16
+        Offsets from the seed in order of growth; each region takes one of the t orders.
+    chance : int
+        Says which; any number, and always the same for the same one.
     points : (max_points, 2) float64, cells
     areas : (max_points,) float32, cells
         Size of the region of each dot.
@@ -73,20 +99,21 @@ def grow(
         my = 0.0
         area = 0.0
         k = 0
-        for k in range(len(dy)):
-            y = y0 + dy[k]
-            x = x0 + dx[k]
+        which = _pick(chance, n, len(dy))
+        for k in range(dy.shape[1]):
+            y = y0 + dy[which, k]
+            x = x0 + dx[which, k]
             if y < 0 or y >= h or x < 0 or x >= w:
                 continue
             c = charge[y, x]
             if not c > 0.0:
                 continue
-            if total + c >= pulse:
-                part = pulse - total
+            if total + c >= 1.0:
+                part = 1.0 - total
                 charge[y, x] = c - part
-                if not charge[y, x] > 1e-6 * pulse:
+                if not charge[y, x] > 1e-6:
                     charge[y, x] = USED
-                total = pulse
+                total = 1.0
                 mass += part
                 mx += part * (x + 0.5)
                 my += part * (y + 0.5)
@@ -100,7 +127,7 @@ def grow(
             area += 1.0
         if charge[y0, x0] > 0.0:
             seed -= 1  # what is left of the seed's own cell starts the next region
-        if total < pulse:
+        if total < 1.0:
             left = total
             continue
         px = mx / mass
@@ -113,8 +140,8 @@ def grow(
             bx = x0
             by = y0
             for j in range(k + 1):
-                y = y0 + dy[j]
-                x = x0 + dx[j]
+                y = y0 + dy[which, j]
+                x = x0 + dx[which, j]
                 if y < 0 or y >= h or x < 0 or x >= w or charge[y, x] == 0.0:
                     continue
                 d = (x + 0.5 - px) ** 2 + (y + 0.5 - py) ** 2

@@ -7,7 +7,9 @@ the darkness; neither is scaled by it alone.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +33,7 @@ _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
 for relaxed dots of locally equal size."""
 
 _BINS = 1024
+_DOTS_AT_ONCE = 24_000
 _ROUNDS = 4  # of passing on ink that a dot cannot lay down
 _ENOUGH = 2e-4  # share of all ink that need not be passed on
 _REACH = 12.0  # mean spacings; a cell reaches no farther from its dot to any side
@@ -61,13 +64,18 @@ class Rule:
     scale: float = 1.0
     thin: float = 1.0
 
-    def radius(self, darkness: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Return the radius for a darkness: small in the light, large in the dark.
+    BLEED_REACH: ClassVar[float] = 0.75
+    """A dot beyond the page's edge is kept if it is nearer than this share of its radius."""
 
-        The ends of the range are kept free, so that solving the tone can still go either way.
+    def radius(self, darkness: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Return the radius for a darkness: small up to the middle tones, large in the dark.
+
+        The number of dots then hardly changes from the middle tones on, where it is the size
+        that carries the tone, and light parts are drawn as finely as can be. The ends of the
+        range are kept free, so that solving the tone can still go either way.
         """
         low, high = self.radius_min, self.radius_max
-        share = 0.12 + 0.68 * np.asarray(darkness, np.float64)
+        share = 0.06 + 0.88 * np.asarray(darkness, np.float64) ** 3
         radius: NDArray[np.float64] = np.clip(self.scale * (low + share * (high - low)), low, high)
         return radius
 
@@ -76,6 +84,10 @@ class Rule:
         per_dot = np.pi * self.radius(darkness) ** 2
         density: NDArray[np.float64] = self.thin * ink_for(np.asarray(darkness)) / per_dot
         return density
+
+    def per_border(self, darkness: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Return dots per unit of length that a bleed adds along the page's edge."""
+        return self.BLEED_REACH * self.radius(darkness) * self.density(darkness)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +116,7 @@ def rule_for(
     darkness: NDArray[np.float32],
     n_dots: int | None,
     size_range: tuple[float, float] | None,
+    border: NDArray[np.float32],
     ratio: float = 2.0,
 ) -> Rule:
     """Choose radii and density for a picture; lengths in pixels.
@@ -114,38 +127,42 @@ def rule_for(
         None: the number follows from `size_range`.
     size_range : (min, max) or None
         None: a range of 1:`ratio` that meets the tone with `n_dots`.
+    border : (m,) float32
+        Darkness of the pixels along the page's edge, if there is a bleed.
     """
-    histogram, values = _histogram(darkness)
-    if size_range is None:
-        if n_dots is None:
-            raise ParameterError("neither a number nor a size is given", "dots")
-        unit = Rule(1.0, ratio)
-        wanted = float(histogram @ unit.density(values))
-        low = math.sqrt(wanted / n_dots) if wanted > 0 else 1.0
-        return Rule(low, low * ratio)
-    low, high = size_range
-    rule = Rule(low, high)
+    levels, rim = _histogram(darkness), _histogram(border)
+    if size_range is not None:
+        rule = Rule(*size_range)
+        return rule if n_dots is None else _scaled(rule, levels, rim, n_dots)
     if n_dots is None:
-        return rule
-    return _scaled(rule, histogram, values, n_dots)
+        raise ParameterError("neither a number nor a size is given", "dots")
+    unit = Rule(1.0, ratio)
+    area = float(levels[0] @ unit.density(levels[1]))
+    length = float(rim[0] @ unit.per_border(rim[1]))
+    if not area > 0:
+        return unit
+    low = (length + math.sqrt(length**2 + 4.0 * n_dots * area)) / (2.0 * n_dots)
+    return Rule(low, low * ratio)
 
 
-def _histogram(darkness: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+_Levels = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def _histogram(darkness: NDArray[np.float32]) -> _Levels:
     """Return pixels per level and the levels; white apart, at exactly 0."""
     level = np.ceil(darkness.ravel() * np.float32(_BINS)).astype(np.intp)
     counts = np.bincount(level, minlength=_BINS + 1).astype(np.float64)
-    sums = np.bincount(level, darkness.ravel(), minlength=_BINS + 1)
-    values = np.divide(sums, counts, out=np.zeros_like(sums), where=counts > 0)
-    return counts, values
+    sums = np.bincount(level, darkness.ravel(), minlength=_BINS + 1).astype(np.float64)
+    return counts, np.divide(sums, counts, out=np.zeros_like(sums), where=counts > 0)
 
 
-def _scaled(
-    rule: Rule, counts: NDArray[np.float64], values: NDArray[np.float64], n_dots: int
-) -> Rule:
+def _scaled(rule: Rule, levels: _Levels, rim: _Levels, n_dots: int) -> Rule:
     """Scale the radii within their range until the rule gives `n_dots`; then thin, never crowd."""
 
     def number(scale: float) -> float:
-        return float(counts @ Rule(rule.radius_min, rule.radius_max, scale).density(values))
+        scaled = replace(rule, scale=scale)
+        inner = float(levels[0] @ scaled.density(levels[1]))
+        return inner + float(rim[0] @ scaled.per_border(rim[1]))
 
     low, high = rule.radius_min / rule.radius_max / 2, 2 * rule.radius_max / rule.radius_min
     for _ in range(50):
@@ -156,79 +173,84 @@ def _scaled(
             high = middle
     there = number(high)
     thin = min(1.0, n_dots / there) if there > 0 else 1.0
-    return Rule(rule.radius_min, rule.radius_max, high, thin)
+    return replace(rule, scale=high, thin=thin)
 
 
 def solve_radii(
-    points: NDArray[np.float64],
-    darkness: NDArray[np.float32],
-    size_range: tuple[float, float],
-) -> NDArray[np.float64]:
-    """Find radii within a range at which the union of the discs meets the darkness.
+    points: NDArray[np.float64], darkness: NDArray[np.float32], rule: Rule
+) -> Iterator[tuple[float, NDArray[np.float64]]]:
+    """Find radii at which the union of the discs meets the darkness.
 
-    Every dot lays down the ink that its Voronoi cell asks for; what its range does not allow is
-    passed on to its neighbours, as far as `_ROUNDS` cells away.
+    Every dot lays down the ink that its Voronoi cell asks for; what the range of the rule does
+    not allow is passed on to its neighbours, as far as `_ROUNDS` cells away.
 
     Parameters
     ----------
     points : (n, 2) float64, pixels of `darkness`
-    darkness : (h, w) float32
-    size_range : (min, max), pixels
+    darkness : (h, w) float32, read-only
+    rule : Rule
+        Its range of radii, in pixels.
 
-    Returns
-    -------
-    (n,) float64, pixels
+    Yields
+    ------
+    share : float
+        Of the work done.
+    radii : (n,) float64, pixels
+        Found once the share is 1.
 
     Notes
     -----
     O(n); the same bits for any number of threads.
     """
     n = len(points)
+    result = np.empty(n)
     if n == 0:
-        return np.empty(0)
-    low, high = size_range
+        yield 1.0, result
+        return
+    low, high = rule.radius_min, rule.radius_max
     order, cell_start, frame = _grid(points, darkness.shape)
-    cells = _Cells(np.ascontiguousarray(points[order]), cell_start, frame, darkness)
+    cells = _Cells(n)
+    for share in cells.build(points[order], cell_start, frame, darkness):
+        yield 0.8 * share, result
     radii, left = cells.fit(low, high)
     for _ in range(_ROUNDS):
         if np.abs(left).sum() <= _ENOUGH * cells.asked.sum():
             break
         cells.even_out(low, high, radii, left)
         radii, left = cells.fit(low, high)
-    result = np.empty(n)
     result[order] = radii
-    return result
+    yield 1.0, result
 
 
 class _Cells:
     """The cells of sorted dots, and the ink that each asks for."""
 
-    def __init__(
+    def __init__(self, n: int) -> None:
+        self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
+        self.beyond = np.empty((n, MAX_CORNERS), np.int32)
+        self.n_corners = np.empty(n, np.uint8)
+        self.asked = np.empty(n)
+
+    def build(
         self,
         xy: NDArray[np.float64],
         cell_start: NDArray[np.int32],
         frame: NDArray[np.float64],
         darkness: NDArray[np.float32],
-    ) -> None:
+    ) -> Iterator[float]:
+        """Build the cells of dots sorted by grid cell; yield the share done."""
         n, (h, w) = len(xy), darkness.shape
         mass = np.empty((h, w + 1))
         run_ranges(sum_darkness, h, darkness, mass, grain=64)
-        self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
-        self.beyond = np.empty((n, MAX_CORNERS), np.int32)
-        self.n_corners = np.empty(n, np.uint8)
-        self.asked = np.empty(n)
-        run_ranges(
-            build_cells,
-            n,
-            xy,
-            cell_start,
-            frame,
-            mass,
-            self.corners,
-            self.beyond,
-            self.n_corners,
-            self.asked,
-        )
+        results = self.corners, self.beyond, self.n_corners, self.asked
+        for first in range(0, n, _DOTS_AT_ONCE):
+            last = min(first + _DOTS_AT_ONCE, n)
+
+            def part(start: int, stop: int, first: int = first) -> None:
+                build_cells(first + start, first + stop, xy, cell_start, frame, mass, *results)
+
+            run_ranges(part, last - first)
+            yield last / n
 
     def fit(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return radii within a range, and the ink it did not allow."""
