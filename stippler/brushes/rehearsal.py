@@ -25,7 +25,8 @@ def rehearse() -> None:
     for kind in KINDS:
         if kind.rhythm != "select":
             brush = Brush(kind.name, kind.name, 3.0)
-            Stroke(editing, brush, PointerSample(5.0, 5.0), 1).commit(PointerSample(6.0, 5.0, t=0.1))
+            stroke = Stroke(editing, brush, PointerSample(5.0, 5.0), 1)
+            stroke.commit(PointerSample(6.0, 5.0, t=0.1))
     editing.merge(editing.begin_run("relax").position_mm)
     editing.end_run()
     while editing.undo():

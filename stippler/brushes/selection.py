@@ -18,7 +18,6 @@ Ids = NDArray[np.int64]
 Point = tuple[float, float]
 
 JITTER_SHARE = 0.2
-RESIZE_PERCENT = 10.0
 _DUPLICATE_SHIFT_MM = 2.0
 
 

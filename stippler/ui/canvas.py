@@ -6,15 +6,22 @@ there, at the cost of a rectangle.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import moderngl
 import numpy as np
 from imgui_bundle import imgui
+from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.render.renderer import Renderer
 from stippler.ui.look import Look
 from stippler.ui.session import Session
+from stippler.ui.tools.toolbox import Chosen
 from stippler.ui.widgets import Rect
+
+if TYPE_CHECKING:
+    from stippler.drawing.editing import Editing
 
 
 class Canvas:
@@ -32,7 +39,9 @@ class Canvas:
         self._texture: moderngl.Texture | None = None
         self._target: moderngl.Framebuffer | None = None
         self._drawn: object = None
-        self._uploaded = -1
+        self._uploaded: object = None
+        self._edited: Editing | None = None  # whose dots are on the GPU
+        self._selected: NDArray[np.int64] = np.empty(0, np.int64)
         self.n_drawn = 0
 
     def show(self, area: Rect, size_px: Size) -> None:
@@ -42,30 +51,46 @@ class Canvas:
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
 
-    def upload(self, session: Session) -> None:
+    def upload(self, session: Session, selection: Chosen) -> None:
         """Bring what has changed since the last call to the GPU."""
-        if session.revision == self._uploaded:
+        editing = session.editing if session.position_mm is None else None
+        edited = (editing.revision if editing else -1, selection.revision)
+        if (session.revision, edited) == self._uploaded:
             return
-        self._uploaded = session.revision
+        self._uploaded = (session.revision, edited)
         drawing = session.drawing
         if drawing is not None:
             self._renderer.set_page(drawing.page.width_mm, drawing.page.height_mm)
-        if session.position_mm is not None and session.radius_mm is not None:
+        if editing is not None:
+            self._upload_edited(editing, selection)
+        elif session.position_mm is not None and session.radius_mm is not None:
             self._renderer.set_positions(session.position_mm, session.radius_mm)
         else:
             self._renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
+        self._edited = editing
 
-    def draw(self, session: Session, camera: Camera, look: Look) -> bool:
+    def _upload_edited(self, editing: Editing, selection: Chosen) -> None:
+        changed, selected = editing.take_changed(), selection.mask(editing)
+        if editing is not self._edited or changed is None:
+            self._renderer.set_dots(editing.dots, selected)
+        else:
+            if selection.ids is not self._selected:
+                for ids in (self._selected, selection.ids):
+                    rows = editing.rows(ids)
+                    changed = np.union1d(changed, rows[rows >= 0])
+            self._renderer.update_dots(editing.dots, changed, selected)
+        self._selected = selection.ids
+
+    def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
-        key = (camera, self._texture.size, session.revision, look.theme, look.reference_opacity)
+        self.upload(session, selection)
+        shown = session.reference if look.reference_shown else None
+        key = (camera, self._texture.size, self._uploaded, look.theme, look.reference_opacity)
         if key == self._drawn:
             return False
-        self.upload(session)
-        self._renderer.set_reference(
-            session.reference if look.reference_shown else None, look.reference_opacity
-        )
+        self._renderer.set_reference(shown, look.reference_opacity)
         if session.drawing is None:
             self._target.use()
             self._target.clear(*look.theme.desk, 1.0)

@@ -15,7 +15,7 @@ from stippler.brushes.brush import Brush
 from stippler.brushes.presets import load_brushes, save_brushes
 from stippler.brushes.stroke import PointerSample
 from stippler.errors import StipplerError
-from stippler.ui.events import Event, KeyDown, KeyUp, Mods
+from stippler.ui.events import LEFT, Event, KeyDown, KeyUp, Mods, Moved, Pressed, Released
 from stippler.ui.messages import WARNING
 from stippler.ui.tools.states import Cornering, Desk, Outlining, Point, Rest, Stroking, ToolState
 
