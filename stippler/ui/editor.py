@@ -13,7 +13,7 @@ from stippler.ui.canvas import Canvas
 from stippler.ui.dialogs import Dialogs, has_native_dialogs
 from stippler.ui.events import Dropped, Event, KeyDown, Moved, Pressed, Released, Scrolled
 from stippler.ui.gui import Gui
-from stippler.ui.layout import BRUSH, DRAWING, HISTORY, Layout
+from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW, Layout
 from stippler.ui.look import Look
 from stippler.ui.messages import ERROR, WARNING
 from stippler.ui.overlay import draw_overlay
@@ -142,6 +142,7 @@ class Editor:
         self._guarded("the tools", self._draw_tools)
         self._guarded("the panel", self._draw_panel)
         self._guarded("the brush's panel", self._draw_brush)
+        self._guarded("the view's panel", self._draw_view)
         self._guarded("the history", self._draw_history)
         if self.session.drawing is None and not self.session.busy:
             draw_invitation(self.widgets, area)
@@ -154,17 +155,21 @@ class Editor:
             self._panel_to_show = ""
 
     def _draw_panel(self) -> None:
-        imgui.begin(DRAWING, None, imgui.WindowFlags_.no_collapse)
-        draw_picture(self.widgets, self.session, self.commands)
-        self.widgets.rule()
-        draw_dots(self.widgets, self.session, self.commands)
-        self.widgets.rule()
-        draw_view(self.widgets, self.look, self.commands)
+        if imgui.begin(DRAWING, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_picture(self.widgets, self.session, self.commands)
+            self.widgets.rule()
+            draw_dots(self.widgets, self.session, self.commands)
+        imgui.end()
+
+    def _draw_view(self) -> None:
+        if imgui.begin(VIEW, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_view(self.widgets, self.look, self.commands)
         imgui.end()
 
     def show_panel(self, name: str) -> None:
         """Bring a panel to the front."""
         self._panel_to_show = name
+        self._schedule.note_input(self._clock())
 
     def _draw_tools(self) -> None:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)

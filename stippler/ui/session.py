@@ -352,7 +352,7 @@ class Session:
         self._keep_dots()
 
     def _keep_dots(self) -> None:
-        """Make the dots that are shown the drawing's; to replace others is a step of its history."""
+        """Make the dots that are shown the drawing's; replacing others is a step of its history."""
         if self.drawing is None:
             return
         import numpy as np
