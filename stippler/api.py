@@ -14,7 +14,8 @@ from stippler.drawing.drawing import Drawing as _Drawing
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import ParameterError
-from stippler.stippling.stipple import Plan, Progress, stages
+from stippler.stippling.plan import Plan
+from stippler.stippling.stipple import Progress, stages
 
 Tone = Literal["linear", "perceptual"]
 DEFAULT_WIDTH_MM = 148.0  # A5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,10 +10,11 @@ from stippler.jobs.worker import Worker
 from stippler.ui.editor import Editor
 from stippler.ui.session import Session
 from stippler.ui.window import Window
-from stippler.ui.work import Work
+from stippler.ui.work import Work, make_ready, stipple_picture
+from stippler.warm import is_warm
 
 if TYPE_CHECKING:
-    from stippler.stippling.stipple import Plan
+    from stippler.stippling.plan import Plan
 
 _SIZE = (1280, 800)
 _FAREWELL_S = 2.0  # for a worker that decodes a large picture; it is let go of after that
@@ -44,7 +46,15 @@ class App:
         self.window = Window("Stippler", size, offscreen=offscreen)
         self.worker: Worker[Work] = Worker(self.window.wake)
         self.exporter: Worker[Path] = Worker(self.window.wake)
-        self.session = Session(self.worker, self.exporter, plan, tone=tone, width_mm=width_mm)
+        self.session = Session(
+            self.worker,
+            self.exporter,
+            plan,
+            tone=tone,
+            width_mm=width_mm,
+            stipple=partial(stipple_picture, is_warm=is_warm),
+            make_ready=partial(make_ready, is_warm=is_warm),
+        )
         native = False if offscreen else None
         self.editor = Editor(self.window, self.session, native_dialogs=native)
 

@@ -14,6 +14,7 @@ from stippler.drawing.drawing import Drawing
 from stippler.errors import DisplayError, ParameterError
 from stippler.render.paper import Color
 from stippler.render.renderer import Renderer
+from stippler.render.state import release_target
 
 MAX_SIDE_PX = 100_000
 _STRIP_PX = 4_000_000  # pixels in one strip
@@ -86,7 +87,7 @@ def _strips(
     page = drawing.page
     whole = Camera((page.width_mm / 2, page.height_mm / 2), scale)
     renderer = Renderer(ctx)
-    target = ctx.simple_framebuffer((size[0], rows), 3)
+    target = ctx.framebuffer([ctx.renderbuffer((size[0], rows), 3)])
     try:
         renderer.set_page(page.width_mm, page.height_mm)
         renderer.set_dots(drawing.dots)
@@ -98,7 +99,7 @@ def _strips(
             pixels = np.frombuffer(target.read(components=3, alignment=1), np.uint8)
             yield pixels.reshape(rows, size[0], 3)[::-1][: size[1] - top]
     finally:
-        target.release()
+        release_target(ctx, target)
         renderer.release()
 
 

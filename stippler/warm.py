@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from stippler.errors import DisplayError
 from stippler.kernels.cache import all_digest, cache_root
+from stippler.kernels.lean import skip_blas
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
@@ -48,7 +49,8 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     from stippler.brushes.rehearsal import rehearse
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from stippler.stippling.stipple import FIRST_DOTS, Plan, stages
+    from stippler.stippling.plan import FIRST_DOTS, Plan
+    from stippler.stippling.stipple import stages
 
     ramp = np.linspace(0, 1, 64 * 64, dtype=np.float32).reshape(64, 64)
     reference = Reference(ramp, 20.0)
@@ -77,6 +79,7 @@ def _write(drawing: Drawing) -> None:
 
 
 def _main() -> None:
+    skip_blas()
     if is_warm():
         return
     start = time.perf_counter()

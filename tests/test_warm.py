@@ -13,7 +13,7 @@ import importlib, json, pkgutil, sys, tempfile
 import numpy as np
 import stippler, stippler.kernels
 from stippler import warm
-from stippler.stippling.stipple import FIRST_DOTS
+from stippler.stippling.plan import FIRST_DOTS
 
 def compiled():
     found = set()

@@ -1,6 +1,6 @@
 // How dots add up to ink, at any scale.
 
-const float MIN_AXIS_PX = 0.6; // narrower dots are widened and paled
+const float MIN_AXIS_PX = 0.53; // narrower dots are widened and paled
 const float ROUGH_FROM_PX = 1.0, ROUGH_FULL_PX = 2.5; // short half axis; below, outlines are smooth
 
 // Returns half axes that, drawn with an edge ramp one pixel wide, give opacity * axes the true area.

@@ -1,4 +1,4 @@
-"""Ink on a grid: the union of discs, and what is left of it when seen from afar."""
+"""Ink on a grid: the union of discs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def cover(
     for r in radii:
         reach = max(reach, r)
     reach += 1.0
-    first = row_of[max(int(np.floor(start - reach)), 0)]
+    first = row_of[min(max(int(np.floor(start - reach)), 0), h)]
     last = row_of[min(int(np.ceil(stop + reach)) + 1, h)]
     field[start:stop] = 0.0
     for k in range(first, last):
@@ -55,31 +55,3 @@ def cover(
                     c = r + 0.5 - np.sqrt(d2)
                     if c > field[row, col]:
                         field[row, col] = min(c, 1.0)
-
-
-@kernel
-def blur_rows(start: int, stop: int, source: Array, weights: Array, target: Array) -> None:
-    """Convolve rows with a symmetric kernel, the border repeated; `weights` from the centre out."""
-    w = source.shape[1]
-    m = len(weights)
-    for y in range(start, stop):
-        for x in range(w):
-            s = weights[0] * source[y, x]
-            for k in range(1, m):
-                s += weights[k] * (source[y, max(x - k, 0)] + source[y, min(x + k, w - 1)])
-            target[y, x] = s
-
-
-@kernel
-def blur_columns(start: int, stop: int, source: Array, weights: Array, target: Array) -> None:
-    """Convolve columns with a symmetric kernel, the border repeated."""
-    h, w = source.shape
-    m = len(weights)
-    for y in range(start, stop):
-        for x in range(w):
-            target[y, x] = weights[0] * source[y, x]
-        for k in range(1, m):
-            a = max(y - k, 0)
-            b = min(y + k, h - 1)
-            for x in range(w):
-                target[y, x] += weights[k] * (source[a, x] + source[b, x])

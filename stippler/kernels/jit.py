@@ -11,10 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import numba
-from numba.core import config
-
 from stippler.kernels.cache import module_folder
+from stippler.kernels.lean import importing_numba
+
+with importing_numba():
+    import numba
+    import numba.np.arraymath
+    from numba.core import config
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

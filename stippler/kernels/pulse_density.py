@@ -117,7 +117,8 @@ def grow(
                 mass += part
                 mx += part * (x + 0.5)
                 my += part * (y + 0.5)
-                area += part / c
+                if charge[y, x] == USED or area == 0.0:
+                    area += 1.0  # a cell divided between regions counts for the last
                 break
             charge[y, x] = USED
             total += c

@@ -44,6 +44,12 @@ U1 = NDArray[np.uint8]
 INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 """What a cell is: bounded by dots alone; by a border as well; not computed."""
 
+APART = 1e-300
+"""Least squared distance of dots that count as two."""
+
+NEAR = 1.1
+"""Squared distance, in grid cells, of the dots that cut first: fewer cuts are wasted."""
+
 
 @inline
 def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
@@ -67,7 +73,15 @@ def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[in
 
 @inline
 def _distance2_to_span(
-    x: float, y: float, row: int, first: int, last: int, gx: float, gy: float, h: float, slack: float
+    x: float,
+    y: float,
+    row: int,
+    first: int,
+    last: int,
+    gx: float,
+    gy: float,
+    h: float,
+    slack: float,
 ) -> float:
     """Return the squared distance to the nearest place a dot of these grid cells can be."""
     dx = max(max(gx + first * h - x, x - (gx + (last + 1) * h)) - slack, 0.0)
@@ -77,7 +91,17 @@ def _distance2_to_span(
 
 @inline
 def seen_distance(
-    x: float, y: float, ring: int, ix: int, iy: int, nx: int, ny: int, gx: float, gy: float, h: float, slack: float
+    x: float,
+    y: float,
+    ring: int,
+    ix: int,
+    iy: int,
+    nx: int,
+    ny: int,
+    gx: float,
+    gy: float,
+    h: float,
+    slack: float,
 ) -> float:
     """Return the distance within which all dots of the compartment are in rings up to `ring`."""
     best = math.inf
@@ -155,6 +179,21 @@ def _gather_edges(
     return n
 
 
+@inline
+def _border_distance(edges: F8, near: I4, n_near: int, x: float, y: float) -> float:
+    """Return the distance of (x, y) from the nearest of the edges listed."""
+    best = math.inf
+    for s in range(n_near):
+        e = near[s]
+        au, av = x - edges[e, 0], y - edges[e, 1]
+        eu, ev = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
+        t = min(max((au * eu + av * ev) / (eu * eu + ev * ev), 0.0), 1.0)
+        au -= t * eu
+        av -= t * ev
+        best = min(best, au * au + av * av)
+    return math.sqrt(best) * (1.0 - 1e-9)
+
+
 @kernel
 def _outline_within(
     cell: F8,
@@ -167,15 +206,13 @@ def _outline_within(
     iy: int,
     nx: int,
     ny: int,
-    first_cell: int,
     gx: float,
     gy: float,
     h: float,
     edges: F8,
     next_edge: I4,
-    edge_start: I4,
-    edge_of_slot: I4,
     near: I4,
+    n_near: int,
     seen: NDArray[np.int64],
     stamp: int,
     chains: F8,
@@ -199,9 +236,6 @@ def _outline_within(
         n2 = cut_cell(cell2, n2, 0.0, -1.0, y - (gy + (iy - ring) * h), -1.0)
     if iy + ring < ny - 1:
         n2 = cut_cell(cell2, n2, 0.0, 1.0, gy + (iy + ring + 1) * h - y, -1.0)
-    n_near = _gather_edges(
-        edge_start, edge_of_slot, ring, ix, iy, nx, ny, first_cell, near, seen, stamp
-    )
     reach2 = reach2_of_cell(cell2, n2)
     n_border, n = outline_piece(
         cell2,
@@ -358,6 +392,7 @@ def relax_dots(
     gone: F8,
     cells: F8,
     kind_of_cell: U1,
+    free_of_dot: F8,
     star: I4,
     n_star: U1,
     suspect: U1,
@@ -386,6 +421,8 @@ def relax_dots(
         Result, by row, unless empty: mass, centroid relative to the dot, second moment of area.
     kind_of_cell
         Result, by row: `INNER`, `RIM` or `TOO_MANY_CORNERS`.
+    free_of_dot
+        Result, by row: a distance from the new position within which no border edge lies.
     star, n_star
         Result, by row, unless empty: the dots around each dot, counter-clockwise.
     suspect
@@ -426,15 +463,22 @@ def relax_dots(
         m = start_lanes(U, V, N, x0, y0, x1, y1)
         ring = 1
         while True:
-            reach2 = 0.0
+            reach2, n_near = 0.0, 0
             if is_packed:
-                for s in range(3 if ring == 1 else 4 * ring):
-                    row, first, last = ring_span(ring, s, ix, iy, nx, ny)
+                for s in range(6 if ring == 1 else 4 * ring):
+                    is_first = ring == 1 and s < 3
+                    row, first, last = ring_span(
+                        ring, s - 3 if ring == 1 and s >= 3 else s, ix, iy, nx, ny
+                    )
                     if last < first:
                         continue
-                    reach2 = reach2_of(U, V, m)
-                    if _distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= 4.0 * reach2:
-                        continue
+                    least, limit = APART, NEAR * h * h
+                    if not is_first:
+                        limit = 4.0 * reach2_of(U, V, m)
+                        if ring == 1:
+                            least = NEAR * h * h
+                        elif _distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= limit:
+                            continue
                     a = first_cell + row * nx
                     m = cut_lanes_by_run(
                         U,
@@ -447,7 +491,8 @@ def relax_dots(
                         y,
                         cell_start[a + first],
                         cell_start[a + last + 1],
-                        reach2,
+                        least,
+                        limit,
                     )
                     if m == OVERFLOW:
                         break
@@ -466,7 +511,14 @@ def relax_dots(
                 reach2 = reach2_of_cell(cell, m)
             far = seen_distance(x, y, ring, ix, iy, nx, ny, gx, gy, h, slack)
             is_last = 4.0 * reach2 <= far * far
-            if free * free <= reach2:
+            if free * free <= reach2 and (is_last or ring > 1):
+                n_near = _gather_edges(
+                    edge_start, edge_of_slot, ring, ix, iy, nx, ny, first_cell, near, seen, stamp
+                )
+                seen_free = seen_distance(x, y, ring, ix, iy, nx, ny, gx, gy, h, 0.0)
+                free = min(seen_free, _border_distance(edges, near, n_near, x, y))
+                stamp += 2
+            if free * free <= reach2 and (is_last or ring > 1):
                 # the cell may lean out of the compartment: only its piece counts
                 if is_packed:
                     unpack_lanes(U, V, N, m, xs, ys, x, y, x0, y0, x1, y1, cell)
@@ -481,29 +533,26 @@ def relax_dots(
                     iy,
                     nx,
                     ny,
-                    first_cell,
                     gx,
                     gy,
                     h,
                     edges,
                     next_edge,
-                    edge_start,
-                    edge_of_slot,
                     near,
+                    n_near,
                     seen,
-                    stamp,
+                    stamp - 2,
                     chains,
                     trace,
                     out,
                 )
-                stamp += 2
                 is_outlined = True
                 is_last = is_last or 4.0 * r2 <= far * far
             if is_last:
                 break
             is_outlined = False
             ring += 1
-        new_x[i], new_y[i], gone[i] = x, y, 0.0
+        new_x[i], new_y[i], gone[i], free_of_dot[i] = x, y, 0.0, free
         if m == OVERFLOW:
             kind_of_cell[i] = TOO_MANY_CORNERS
             continue
@@ -548,3 +597,4 @@ def relax_dots(
         new_x[i] = min(max(x + du, grid_real[c, 4]), grid_real[c, 6])
         new_y[i] = min(max(y + dv, grid_real[c, 5]), grid_real[c, 7])
         gone[i] = math.sqrt(du * du + dv * dv)
+        free_of_dot[i] = free - gone[i]

@@ -163,8 +163,10 @@ def lowest_bit(typing_context: Any, bits: Any) -> Any:
 
 
 @intrinsic
-def near_mask(typing_context: Any, xs: Any, ys: Any, j: Any, x: Any, y: Any, limit: Any) -> Any:
-    """Return bits for the dots j..j + SCAN - 1 with ``0 < distance² < limit`` from (x, y)."""
+def near_mask(
+    typing_context: Any, xs: Any, ys: Any, j: Any, x: Any, y: Any, least: Any, limit: Any
+) -> Any:
+    """Return bits for the dots j..j + SCAN - 1 with ``least <= distance² < limit`` from (x, y)."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         px = _data(context, builder, signature.args[0], args[0])
@@ -172,12 +174,12 @@ def near_mask(typing_context: Any, xs: Any, ys: Any, j: Any, x: Any, y: Any, lim
         dx = _sub(builder, _load(builder, px, args[2], SCAN), _splat(builder, args[3], SCAN))
         dy = _sub(builder, _load(builder, py, args[2], SCAN), _splat(builder, args[4], SCAN))
         d2 = _add(builder, _mul(builder, dx, dx), _mul(builder, dy, dy))
-        near = builder.fcmp_ordered("<", d2, _splat(builder, args[5], SCAN))
-        apart = builder.fcmp_ordered(">", d2, ir.Constant(d2.type, [0.0] * SCAN))
+        apart = builder.fcmp_ordered(">=", d2, _splat(builder, args[5], SCAN))
+        near = builder.fcmp_ordered("<", d2, _splat(builder, args[6], SCAN))
         return _mask_bits(builder, builder.and_(near, apart), SCAN)
 
-    signature = types.int64(xs, ys, types.int64, types.float64, types.float64, types.float64)
-    return signature, generate
+    real = types.float64
+    return types.int64(xs, ys, types.int64, real, real, real, real), generate
 
 
 @intrinsic

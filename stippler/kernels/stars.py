@@ -16,7 +16,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.grid import column_of
 from stippler.kernels.jit import kernel
 from stippler.kernels.relaxation import INNER, sum_field
 from stippler.kernels.simd import (
@@ -35,6 +34,7 @@ F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
 U1 = NDArray[np.uint8]
 
+
 @kernel
 def verify_stars(
     start: int,
@@ -44,8 +44,6 @@ def verify_stars(
     fixed: NDArray[np.bool_],
     compartment_of_dot: I4,
     grid_real: F8,
-    grid_int: I4,
-    clear: I4,
     mass: F8,
     moment: F8,
     frame: F8,
@@ -53,6 +51,7 @@ def verify_stars(
     star: I4,
     n_star: U1,
     kind_of_cell: U1,
+    free_of_dot: F8,
     new_x: F8,
     new_y: F8,
     gone: F8,
@@ -79,13 +78,8 @@ def verify_stars(
         beyond = outside_box(U, V, x0 - x, y0 - y, x1 - x, y1 - y)
         if (bad | beyond) & ((1 << m) - 1):
             continue
-        if grid_int[c, 3] == 1:
-            nx = grid_int[c, 0]
-            ix = column_of(x, grid_real[c, 0], grid_real[c, 3], nx)
-            iy = column_of(y, grid_real[c, 1], grid_real[c, 3], grid_int[c, 1])
-            free = max(clear[grid_int[c, 2] + iy * nx + ix] - 1, 0) * grid_real[c, 2]
-            if free * free <= reach2_of(U, V, m):
-                continue
+        if free_of_dot[i] * abs(free_of_dot[i]) <= reach2_of(U, V, m):
+            continue
         todo[i] = 0
         new_x[i], new_y[i], gone[i] = x, y, 0.0
         if fixed[i]:
@@ -111,6 +105,7 @@ def verify_stars(
         new_x[i] = min(max(x + du, x0), x1)
         new_y[i] = min(max(y + dv, y0), y1)
         gone[i] = math.sqrt(du * du + dv * dv)
+        free_of_dot[i] -= gone[i]
 
 
 @kernel

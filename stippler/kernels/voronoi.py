@@ -60,6 +60,22 @@ def start_lanes(U: Any, V: Any, N: Any, x0: float, y0: float, x1: float, y1: flo
     return 4
 
 
+@kernel
+def _longest_out(U: Any, V: Any, m: int, a: float, b: float, mask: int) -> int:
+    """Return the run of corners out around the one that is furthest out."""
+    best = 0
+    for k in range(1, m):
+        if a * get(U, k) + b * get(V, k) > a * get(U, best) + b * get(V, best):
+            best = k
+    run = 1 << best
+    for step in (1, m - 1):
+        k = (best + step) % m
+        while (mask >> k) & 1 and not (run >> k) & 1:
+            run |= 1 << k
+            k = (k + step) % m
+    return run
+
+
 @inline
 def _cut_lanes(
     U: Any, V: Any, N: Any, m: int, a: float, b: float, c: float, number: int, mask: int
@@ -73,6 +89,12 @@ def _cut_lanes(
     turned = ((mask >> z) | (mask << (m - z))) & all_corners
     p = lowest_bit(turned)
     n_out = lowest_bit(~(turned >> p))
+    if turned >> (p + n_out):  # rounding: corners that all but coincide fall to both sides
+        mask = _longest_out(U, V, m, a, b, mask)
+        z = lowest_bit(~mask)
+        turned = ((mask >> z) | (mask << (m - z))) & all_corners
+        p = lowest_bit(turned)
+        n_out = lowest_bit(~(turned >> p))
     p += z  # first corner out
     q = p + n_out  # first corner in again
     s_p = a * get(U, p - 1) + b * get(V, p - 1) - c
@@ -103,16 +125,16 @@ def cut_lanes_by_run(
     y: float,
     first: int,
     end: int,
-    reach2: float,
+    least: float,
+    limit: float,
 ) -> int:
     """Cut the cell of (x, y) by the dots first..end; return its corners, or `OVERFLOW`.
 
-    Dots further than twice the cell's reach cannot cut it.
+    Only dots with ``least <= distance² < limit`` count.
     """
-    limit = 4.0 * reach2
     j = first
     while j < end:
-        near = near_mask(xs, ys, j, x, y, limit)
+        near = near_mask(xs, ys, j, x, y, least, limit)
         if end - j < SCAN:
             near &= (1 << (end - j)) - 1
         while near != 0:
@@ -187,28 +209,22 @@ def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> i
     and the cut becomes a new side.
     """
     limit = c * (1.0 + TOLERANCE)
-    n_out = 0
+    most = 0
     for k in range(m):
-        s = a * cell[0, k] + b * cell[1, k]
-        cell[6, k] = s - c
-        if s > limit:
-            n_out += 1
-    if n_out == 0:
-        return m
+        cell[6, k] = a * cell[0, k] + b * cell[1, k] - c
+        if cell[6, k] > cell[6, most]:
+            most = k
     eps = limit - c
-    first = 0  # the first corner out after one that is in
-    if cell[6, 0] > eps:
-        first = m - 1
-        while first > 0 and cell[6, first] > eps:
-            first -= 1
-        first = first + 1 if cell[6, first] <= eps else 0
-        if first == m:
-            first = 0
-    else:
-        while cell[6, first] <= eps:
-            first += 1
-    last = first  # the last corner out
+    if cell[6, most] <= eps:
+        return m
+    first = last = most  # the run of corners out around the one that is furthest out
     n_out = 1
+    while n_out < m:
+        k = first - 1 if first > 0 else m - 1
+        if cell[6, k] <= eps:
+            break
+        first = k
+        n_out += 1
     while n_out < m:
         k = last + 1 if last + 1 < m else 0
         if cell[6, k] <= eps:

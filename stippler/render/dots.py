@@ -22,6 +22,7 @@ from stippler.render.state import set_state
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
 _ALONE_PX = 6.0  # dots of this radius need not know of one another
+_NOT_OF_ROUND = ("u_form", "u_turn")
 _MODES = {"all": 1, "selected": 2, "tip": 3}
 
 
@@ -156,6 +157,8 @@ class DotsPass:
         if as_points:
             assert self._seen is not None
             uniforms = uniforms | {"u_largest_mm": self._seen.largest_mm}
+        if "ROUND" in defines:
+            uniforms = {k: v for k, v in uniforms.items() if k not in _NOT_OF_ROUND}
         program.set(uniforms)
         if as_points:
             array.render(moderngl.POINTS, vertices=n)

@@ -7,7 +7,7 @@ import moderngl
 from stippler.camera import Camera, Size
 from stippler.render.paper import Color, page_matrix
 from stippler.render.shaders import Program
-from stippler.render.state import set_state, set_target
+from stippler.render.state import release_target, set_state, set_target
 
 MARGIN_PX = 40
 """Around the picture, so that sprites whose centre lies outside are drawn too."""
@@ -31,7 +31,7 @@ class InkTarget:
             self._texture = self._ctx.texture(whole, 1, dtype="f4")
             self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
             self._framebuffer = self._ctx.framebuffer([self._texture])
-        set_target(self._framebuffer, whole)
+        set_target(self._ctx, self._framebuffer, whole)
         self._framebuffer.clear()
         return whole
 
@@ -61,9 +61,8 @@ class InkTarget:
         self._vertices.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     def _release_target(self) -> None:
-        if self._framebuffer is not None and self._texture is not None:
-            self._framebuffer.release()
-            self._texture.release()
+        if self._framebuffer is not None:
+            release_target(self._ctx, self._framebuffer)
         self._framebuffer = self._texture = None
 
     def release(self) -> None:

@@ -120,12 +120,13 @@ class Renderer:
         """
         self._dots.draw(camera, size_px, self._origin_mm, self._ink, self._preview)
         target = framebuffer or self._ctx.screen
-        set_target(target, size_px)
+        set_target(self._ctx, target, size_px)
         target.clear(*desk, 1.0)
         # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
         is_bare = not self._shows_reference and camera.rotation_rad == 0.0
         page_mm = self._page_mm
-        self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
+        if paper != desk:
+            self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
         if self._shows_reference:
             self._reference.draw(camera, size_px, self._opacity, ink)
         self._ink.lay(camera, size_px, page_mm, ink, paper if is_bare else None)

@@ -43,7 +43,7 @@ class Source:
         version = next((i for i, line in enumerate(lines) if _VERSION.match(line)), None)
         if version is None:
             raise ShaderError(f"{path}: no #version line")
-        body = lines[:version] + lines[version + 1 :]
+        body = [*lines[:version], "", *lines[version + 1 :]]
         self.text = "\n".join([lines[version], *(f"#define {d} 1" for d in defines), *body, ""])
 
     def _lines(self, path: Path, wanted_by: str) -> list[str]:

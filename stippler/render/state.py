@@ -24,10 +24,20 @@ def set_state(ctx: moderngl.Context, blending: Blending, *, sprites: bool = Fals
     gl.wireframe = False
 
 
-def set_target(framebuffer: moderngl.Framebuffer, size_px: Size) -> None:
-    """Draw into all of a framebuffer's lower left corner of this size, every channel."""
+def set_target(ctx: moderngl.Context, framebuffer: moderngl.Framebuffer, size_px: Size) -> None:
+    """Draw into a framebuffer's lower left corner of this size, every channel; ready to clear."""
+    ctx.enable_only(moderngl.NOTHING)  # discarding would discard clearing too
     target: Any = framebuffer
     target.use()
     target.scissor = None
     target.viewport = (0, 0, *size_px)
     target.color_mask = True, True, True, True
+
+
+def release_target(ctx: moderngl.Context, framebuffer: moderngl.Framebuffer) -> None:
+    """Free a framebuffer, its attachments too; one in use would be bound again when it is gone."""
+    ctx.detect_framebuffer(0).use()
+    attachments = framebuffer.color_attachments
+    framebuffer.release()
+    for attachment in attachments:
+        attachment.release()

@@ -67,9 +67,10 @@ class Cells:
         self._set_density(density)
         self._slack = np.inf
         self._keep = False
-        self._star = np.empty((n, LANES), np.int32)
+        self._star = np.zeros((n, LANES), np.int32)
         self._n_star = np.zeros(n, np.uint8)
         self._kind_of_cell = np.zeros(n, np.uint8)
+        self._free_of_dot = np.zeros(n)
         self._has_stars = False
 
     @property
@@ -100,7 +101,7 @@ class Cells:
 
     def measure(self, weighted: bool) -> Floats:
         """Return mass, centroid from the dot and second moment of cells, in the order given."""
-        self._sort()
+        self._sort(self._has_stars)
         cells = np.zeros((self.n, 4))
         new = np.zeros(self.n + SCAN), np.zeros(self.n + SCAN), np.empty(self.n)
         rows = np.arange(self.n, dtype=np.int32)
@@ -130,7 +131,7 @@ class Cells:
                 self.compartment_of_dot, self._cell_start, self._slack, grid.real, grid.whole,
                 parts.edges, parts.next_edge, grid.edge_start, grid.edge_of_slot, grid.clear,
                 mass, moment, self._frame, cap, grid.most_edges, self.over,
-                *new, cells, self._kind_of_cell,
+                *new, cells, self._kind_of_cell, self._free_of_dot,
                 self._star if has_stars else _NO_STARS, self._n_star, suspect,
                 grain=GRAIN if is_all else FEW, chunks=8, cancel=cancel,
             )  # fmt: skip
@@ -149,8 +150,8 @@ class Cells:
         grid = self.grid
         done = run_ranges(
             verify_stars, self.n, self.xs, self.ys, self.fixed, self.compartment_of_dot,
-            grid.real, grid.whole, grid.clear, self._mass, self._moment, self._frame, self.over,
-            self._star, self._n_star, self._kind_of_cell, *new, todo,
+            grid.real, self._mass, self._moment, self._frame, self.over,
+            self._star, self._n_star, self._kind_of_cell, self._free_of_dot, *new, todo,
             grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
@@ -193,6 +194,7 @@ class Cells:
         run_ranges(renumber_stars, n, order, new_row, old, self._star, grain=GRAIN)
         self._n_star = self._n_star[order]
         self._kind_of_cell = self._kind_of_cell[order]
+        self._free_of_dot = self._free_of_dot[order]
 
     def _set_density(self, density: DensityField | None) -> None:
         self._frame = np.array([0.0, 0.0, 1.0, 1.0])

@@ -18,12 +18,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from stippler.errors import ParameterError
 from stippler.kernels.pulse_density import fill_cells, grow
 from stippler.kernels.seeds import chamfer, order_by_distance, outside_polygon
-
-GROWTHS = ("circular", "triangular")
-"""Orders in which a region takes cells; the first has the better spectrum."""
-
-STARTS = ("top", "border")
-"""Where the first region lies: seeds in raster order, or from the border inwards."""
+from stippler.stippling.plan import GROWTHS, STARTS
 
 CELLS_PER_DOT = 14.0
 """Super-sampling aims at this many cells in the smallest region."""

@@ -14,14 +14,15 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
-from stippler.render.renderer import Renderer
 from stippler.ui.look import Look
 from stippler.ui.session import Session
 from stippler.ui.tools.toolbox import Chosen
 from stippler.ui.widgets import Rect
 
 if TYPE_CHECKING:
+    from stippler.drawing.drawing import Page
     from stippler.drawing.editing import Editing
+    from stippler.render.renderer import Renderer
 
 
 class Canvas:
@@ -35,7 +36,7 @@ class Canvas:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._renderer = Renderer(ctx)
+        self._made: Renderer | None = None  # with the first drawing
         self._texture: moderngl.Texture | None = None
         self._target: moderngl.Framebuffer | None = None
         self._drawn: object = None
@@ -51,61 +52,71 @@ class Canvas:
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
 
-    def upload(self, session: Session, selection: Chosen) -> None:
-        """Bring what has changed since the last call to the GPU."""
-        editing = session.editing if session.position_mm is None else None
-        edited = (editing.revision if editing else -1, selection.revision)
-        if (session.revision, edited) == self._uploaded:
-            return
-        self._uploaded = (session.revision, edited)
-        drawing = session.drawing
-        if drawing is not None:
-            self._renderer.set_page(drawing.page.width_mm, drawing.page.height_mm)
-        if editing is not None:
-            self._upload_edited(editing, selection)
-        elif session.position_mm is not None and session.radius_mm is not None:
-            self._renderer.set_positions(session.position_mm, session.radius_mm)
+    def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
+        """Draw the page if it would look different from the last time; return whether it did."""
+        if self._target is None or self._texture is None:
+            return False
+        size_px = self._texture.size
+        content = _content(session, selection)
+        key = (camera, size_px, content, look.theme, look.reference_opacity)
+        if key == self._drawn:
+            return False
+        if session.drawing is None:
+            self._target.use()
+            self._target.clear(*look.theme.desk, 1.0)
         else:
-            self._renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
-        self._edited = editing
+            renderer = self._renderer()
+            self._upload(renderer, session, selection, session.drawing.page)
+            renderer.set_reference(
+                session.reference if look.reference_shown else None, look.reference_opacity
+            )
+            colours = look.theme
+            renderer.draw(
+                camera,
+                size_px,
+                self._target,
+                paper=colours.paper,
+                desk=colours.desk,
+                ink=colours.ink,
+            )
+        self._drawn = key
+        self.n_drawn += 1
+        return True
 
-    def _upload_edited(self, editing: Editing, selection: Chosen) -> None:
+    def _renderer(self) -> Renderer:
+        """Return the renderer; it is imported late, for the sake of the first frame."""
+        if self._made is None:
+            from stippler.render.renderer import Renderer
+
+            self._made = Renderer(self._ctx)
+        return self._made
+
+    def _upload(self, renderer: Renderer, session: Session, selection: Chosen, page: Page) -> None:
+        """Bring what has changed since the last call to the GPU."""
+        content = _content(session, selection)
+        if content == self._uploaded:
+            return
+        renderer.set_page(page.width_mm, page.height_mm)
+        editing = session.editing if session.position_mm is None else None
+        if editing is not None:
+            self._upload_edited(renderer, editing, selection)
+        elif session.position_mm is not None and session.radius_mm is not None:
+            renderer.set_positions(session.position_mm, session.radius_mm)
+        else:
+            renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
+        self._uploaded, self._edited = content, editing
+
+    def _upload_edited(self, renderer: Renderer, editing: Editing, selection: Chosen) -> None:
         changed, selected = editing.take_changed(), selection.mask(editing)
         if editing is not self._edited or changed is None:
-            self._renderer.set_dots(editing.dots, selected)
+            renderer.set_dots(editing.dots, selected)
         else:
             if selection.ids is not self._selected:
                 for ids in (self._selected, selection.ids):
                     rows = editing.rows(ids)
                     changed = np.union1d(changed, rows[rows >= 0])
-            self._renderer.update_dots(editing.dots, changed, selected)
+            renderer.update_dots(editing.dots, changed, selected)
         self._selected = selection.ids
-
-    def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
-        """Draw the page if it would look different from the last time; return whether it did."""
-        if self._target is None or self._texture is None:
-            return False
-        self.upload(session, selection)
-        shown = session.reference if look.reference_shown else None
-        key = (camera, self._texture.size, self._uploaded, look.theme, look.reference_opacity)
-        if key == self._drawn:
-            return False
-        self._renderer.set_reference(shown, look.reference_opacity)
-        if session.drawing is None:
-            self._target.use()
-            self._target.clear(*look.theme.desk, 1.0)
-        else:
-            self._renderer.draw(
-                camera,
-                self._texture.size,
-                self._target,
-                paper=look.theme.paper,
-                desk=look.theme.desk,
-                ink=look.theme.ink,
-            )
-        self._drawn = key
-        self.n_drawn += 1
-        return True
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
         if self._texture is None or self._texture.size != size_px:
@@ -124,4 +135,11 @@ class Canvas:
     def close(self) -> None:
         """Free every GL object."""
         self._free()
-        self._renderer.release()
+        if self._made is not None:
+            self._made.release()
+
+
+def _content(session: Session, selection: Chosen) -> tuple[int, int, int]:
+    """Return what tells one state of the dots from another."""
+    edited = session.editing.revision if session.editing is not None else -1
+    return session.revision, edited, selection.revision

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from stippler.drawing.editing import Editing
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update, Worker
-    from stippler.stippling.stipple import Plan
+    from stippler.stippling.plan import Plan
 
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 PHASES: tuple[Phase, ...] = get_args(Phase)
@@ -46,6 +46,8 @@ class Session:
         Where drawings are made and written; the owner closes them.
     plan : Plan
         To begin with.
+    stipple : callable
+        Makes the jobs.
 
     Attributes
     ----------
@@ -71,10 +73,12 @@ class Session:
         *,
         tone: str,
         width_mm: float,
-        stipple: Stipple = work.stipple_picture,
+        stipple: Stipple,
+        make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._worker, self._exporter, self._stipple, self._clock = worker, exporter, stipple, clock
+        self._make_ready = make_ready
         self.plan = plan
         self.tone, self.width_mm = tone, width_mm
         self.running_plan: Plan | None = None
@@ -112,7 +116,7 @@ class Session:
         """Begin a drawing on an empty page."""
         self._end_run()
         self._page, self._asked, self.running_plan = page, None, None
-        self._run("running", work.PREPARE, work.make_ready)
+        self._run("running", work.PREPARE, self._make_ready)
 
     def relax(self, iterations: int, *, weighted: bool) -> None:
         """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""

@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from stippler.stippling.stipple import Plan, Progress
+    from stippler.stippling.plan import Plan
+    from stippler.stippling.stipple import Progress
 
 PREPARE, READ = "prepare", "read"
 _LOOK_S = 0.1  # between two looks at a pause or a stop
@@ -64,16 +65,23 @@ class Work:
     moved_mm: NDArray[np.float64] | None = None
 
 
-def stipple_picture(source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
-    """Stipple a picture from the file, or from its reference where it has been read before."""
+def stipple_picture(
+    source: Source, plan: Plan, reference: Reference | None, *, is_warm: Callable[[], bool]
+) -> Iterator[Work]:
+    """Stipple a picture from the file, or from its reference where it has been read before.
+
+    Where the kernels are not compiled yet (`is_warm`), a process of its own does that first: it
+    can be ended at any time, and leaves the window's thread alone.
+    """
     if reference is None:
         yield Work(READ)
         from stippler.files.picture import read_picture
 
         reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
         yield Work(READ, 1, 1, reference)
-    for n_ready, n_kernels in _prepared_kernels():
-        yield Work(PREPARE, n_ready, n_kernels, reference)
+    if not is_warm():
+        for n_ready, n_kernels in _prepared_kernels():
+            yield Work(PREPARE, n_ready, n_kernels, reference)
     from stippler.brushes.rehearsal import rehearse
     from stippler.stippling.stipple import stages
 
@@ -83,10 +91,11 @@ def stipple_picture(source: Source, plan: Plan, reference: Reference | None) -> 
         yield Work(progress.stage, progress.done, progress.total, reference, progress)
 
 
-def make_ready() -> Iterator[Work]:
+def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
     """Load everything that painting needs, and compile it where it is not."""
-    for n_ready, n_kernels in _prepared_kernels():
-        yield Work(PREPARE, n_ready, n_kernels)
+    if not is_warm():
+        for n_ready, n_kernels in _prepared_kernels():
+            yield Work(PREPARE, n_ready, n_kernels)
     from stippler.brushes.rehearsal import rehearse
 
     rehearse()
@@ -119,11 +128,7 @@ def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Itera
 
 
 def _prepared_kernels() -> Iterator[tuple[int, int]]:
-    """Compile the kernels in a process of its own, if they are not, so that it can be ended."""
-    from stippler.warm import is_warm
-
-    if is_warm():
-        return
+    """Compile the kernels in a process of its own; tell how many of how many are done."""
     lines: list[str] = []
     process = subprocess.Popen(
         [sys.executable, "-m", "stippler.warm"],

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from stippler.app import App
-from stippler.stippling.stipple import Plan
+from stippler.stippling.plan import Plan
 from stippler.ui.host import Host
 
 

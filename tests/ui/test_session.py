@@ -12,7 +12,8 @@ import pytest
 from stippler.drawing.reference import Reference
 from stippler.errors import PictureError
 from stippler.jobs.worker import Update
-from stippler.stippling.stipple import Plan, Progress
+from stippler.stippling.plan import Plan
+from stippler.stippling.stipple import Progress
 from stippler.ui.messages import ERROR, INFO, WARNING
 from stippler.ui.session import Session
 from stippler.ui.work import Source, Work

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from stippler.drawing.reference import Reference
-from stippler.stippling.stipple import Plan
+from stippler.stippling.plan import Plan
 from stippler.ui import editor as editor_module
 from stippler.ui.layout import VIEW
 from stippler.ui.theme import DARK, LIGHT

@@ -1,0 +1,80 @@
+"""What to make of a reference; importing it costs nothing, so that a window opens at once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from stippler.errors import ParameterError
+
+FIRST_DOTS = ("pulse-density", "floyd-steinberg", "random", "hexagonal")
+"""Ways to place the first dots."""
+
+GROWTHS = ("circular", "triangular")
+"""Orders in which a region takes cells; the first has the better spectrum."""
+
+STARTS = ("top", "border")
+"""Where the first region lies: seeds in raster order, or from the border inwards."""
+
+DEFAULT_DOTS = 20_000
+MAX_DOTS = 20_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What to make of a reference.
+
+    Attributes
+    ----------
+    n_dots : int or None
+        None: follows from the size range, or `DEFAULT_DOTS` without one.
+    size_range_mm : (min, max) or None
+        Radii; None: the range of 1:2 that meets the tone with `n_dots`.
+    iterations : int
+        Relaxation steps.
+    seed : int
+        Chooses what is left to chance.
+    first_dots : {"pulse-density", "floyd-steinberg", "random", "hexagonal"}
+    growth : {"circular", "triangular"}
+        Order in which pulse-density regions take cells.
+    start : {"top", "border"}
+        Where pulse-density begins.
+    weighted : bool
+        Relax by the wanted density; False is the paper's unweighted form.
+    """
+
+    n_dots: int | None = None
+    size_range_mm: tuple[float, float] | None = None
+    iterations: int = 20
+    seed: int = 1
+    first_dots: str = "pulse-density"
+    growth: str = "circular"
+    start: str = "top"
+    weighted: bool = True
+
+    def __post_init__(self) -> None:
+        if self.n_dots is not None and not 1 <= self.n_dots <= MAX_DOTS:
+            raise ParameterError(
+                f"{self.n_dots} dots cannot be drawn", "dots", f"give 1 to {MAX_DOTS:,}"
+            )
+        if self.size_range_mm is not None:
+            low, high = self.size_range_mm
+            if not (math.isfinite(low) and math.isfinite(high) and 0 < low <= high):
+                raise ParameterError(
+                    f"{low:g}:{high:g} is no range of radii",
+                    "size range",
+                    "give MIN:MAX in mm with 0 < MIN <= MAX",
+                )
+        if not 0 <= self.iterations <= 100_000:
+            raise ParameterError(
+                f"{self.iterations} steps cannot be run", "iterations", "give 0 to 100,000"
+            )
+        if not 0 <= self.seed < 2**63:
+            raise ParameterError(f"{self.seed} is no seed", "seed", "give 0 or more")
+        for name, value, known in (
+            ("first dots", self.first_dots, FIRST_DOTS),
+            ("growth", self.growth, GROWTHS),
+            ("start", self.start, STARTS),
+        ):
+            if value not in known:
+                raise ParameterError(f"{value!r} is unknown", name, f"one of {', '.join(known)}")

@@ -1,0 +1,167 @@
+"""The shader's outline is the kernel's, to 1 % of the radius; a preview is what is left behind."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from stippler.camera import Camera
+from stippler.drawing.dots import Dots
+from stippler.drawing.pens import PENS, Preview, ShapeChange
+from stippler.kernels.dot_shape import outlines
+
+RADIUS_PX = 100.0
+SIZE = (640, 640)
+
+in_one_context = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+def bilinear(image: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Return an image's values between pixel centres."""
+    x, y = (points - 0.5).T
+    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
+    u, v = x - i, y - j
+    top = image[j, i] * (1 - u) + image[j, i + 1] * u
+    return top * (1 - v) + (image[j + 1, i] * (1 - u) + image[j + 1, i + 1] * u) * v
+
+
+def normals(ring: np.ndarray) -> np.ndarray:
+    along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    outwards = np.column_stack([along[:, 1], -along[:, 0]])
+    return outwards / np.linalg.norm(outwards, axis=1, keepdims=True)
+
+
+@in_one_context
+@given(
+    elongation=st.floats(1, 4, width=32),
+    angle=st.floats(-7, 7, width=32),
+    roughness=st.floats(0, 1, width=32),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_edge_on_screen_is_the_outline(
+    renderer, canvas, shaped, elongation, angle, roughness, seed
+):
+    """A hundredth of the radius inside the outline is inked, a hundredth outside is not."""
+    renderer.set_page(6.4, 6.4)
+    dots = shaped(
+        [(3.2, 3.2)], 1.0, elongation=elongation, angle=angle, roughness=roughness, seed=seed
+    )
+    renderer.set_dots(dots)
+    target = canvas(SIZE)
+    camera = Camera((3.2, 3.2), RADIUS_PX)
+    renderer.draw(camera, SIZE, target.framebuffer, paper=(1, 1, 1), ink=(0, 0, 0))
+    seen = 1.0 - target.pixels()[:, :, 0] / 255.0
+    ring = outlines(dots, 400)[0] * RADIUS_PX
+    step = normals(ring) * 0.01 * RADIUS_PX
+    # Where the outline turns within a few pixels a step along the normal may leave by the far side.
+    inside = bilinear(seen, ring - step)
+    outside = bilinear(seen, ring + step)
+    assert (inside > 0.5).mean() > 0.995
+    assert (outside < 0.5).mean() > 0.995
+    on = bilinear(seen, ring)
+    assert np.abs(on - 0.5).mean() < 0.06
+
+
+CHANGES = {
+    "enlarge": ShapeChange(radius=(1.4, 0.0)),
+    "set size": ShapeChange(radius=(0.0, 0.5)),
+    "reduce": ShapeChange(radius=(0.5, -0.01)),
+    "deform": ShapeChange(elongation=(1.0, 1.2), roughness=(1.0, 0.5)),
+    "round": ShapeChange(elongation=(0.0, 1.0), roughness=(0.0, 0.0)),
+    "direct": ShapeChange(elongation=(0.0, 3.0), angle_rad=0.7),
+    "scatter": ShapeChange(elongation=(1.3, 0.0), scatter_rad=math.pi / 2),
+}
+WHERE = {
+    "all": {"which": "all"},
+    "selected": {"which": "selected"},
+    "hard tip": {"which": "tip", "center_mm": (22.0, 13.0), "radius_mm": 9.0},
+    "soft tip": {"which": "tip", "center_mm": (22.0, 13.0), "radius_mm": 12.0, "hardness": 0.2},
+}
+
+
+@pytest.mark.parametrize("where", WHERE)
+@pytest.mark.parametrize("change", CHANGES)
+def test_letting_go_leaves_what_the_preview_showed(renderer, ink, many, change, where):
+    dots = many()
+    selected = np.arange(len(dots)) % 3 == 0
+    renderer.set_page(40, 30)
+    renderer.set_dots(dots, selected)
+    camera, size = Camera((20, 15), 24.0), (960, 720)
+    plain = ink(camera, size)
+    preview = Preview(CHANGES[change], **WHERE[where])
+    renderer.set_preview(preview)
+    shown = ink(camera, size)
+    new = preview.change.of(dots, preview.weights(dots.position_mm, selected))
+    made = dataclasses.replace(dots, **{f: getattr(new, f) for f in new.__dataclass_fields__})
+    renderer.set_preview(None)
+    assert (ink(camera, size) == plain).all()
+    renderer.set_dots(made, selected)
+    left = ink(camera, size)
+    assert np.abs(left - plain).max() > 0.5
+    assert np.abs(shown - left).max() < 0.05
+    assert np.abs(shown - left).mean() < 2e-4
+
+
+def test_a_preview_uploads_nothing(renderer, ink, many, monkeypatch):
+    renderer.set_page(40, 30)
+    renderer.set_dots(many())
+    ink(Camera((20, 15), 8.0), (320, 240))
+    revision = renderer._dots.buffer.revision
+    before = renderer._dots.buffer.gl.read()
+    renderer.set_preview(Preview(ShapeChange(radius=(2.0, 0.0))))
+    ink(Camera((20, 15), 8.0), (320, 240))
+    assert renderer._dots.buffer.revision == revision
+    assert renderer._dots.buffer.gl.read() == before
+
+
+def test_an_enlarged_preview_reaches_into_the_view(renderer, ink, shaped):
+    """A dot that is hidden as it is must be seen where the preview makes it reach the window."""
+    renderer.set_page(40, 30)
+    renderer.set_dots(shaped([(20.0, 15.0), (1.0, 1.0)], 0.5))
+    camera = Camera((24.0, 15.0), 100.0)
+    assert ink(camera, (320, 240)).sum() == 0
+    renderer.set_preview(Preview(ShapeChange(radius=(0.0, 3.0))))
+    assert ink(camera, (320, 240)).sum() > 1000
+
+
+@pytest.mark.parametrize("pen", PENS, ids=lambda pen: pen.name)
+def test_a_pen_keeps_areas_and_ranges(pen, many):
+    dots = many(kind="round")
+    shapes = pen.shapes(dots)
+    assert (shapes.radius_mm == dots.radius_mm).all()
+    for values, (low, high) in (
+        (shapes.elongation, pen.elongation),
+        (shapes.roughness, pen.roughness),
+    ):
+        assert values.min() >= np.float32(low) - 1e-6
+        assert values.max() <= np.float32(high) + 1e-6
+        assert np.ptp(values) >= 0.9 * (high - low)
+    assert np.ptp(shapes.angle_rad) <= 2 * pen.spread_rad + 1e-6
+    assert np.ptp(shapes.angle_rad) >= 1.8 * pen.spread_rad
+
+
+def test_pens_and_changes_refuse_nonsense():
+    from stippler.drawing.pens import Pen
+    from stippler.errors import ParameterError
+
+    for wrong in (
+        {"elongation": (0.5, 1.0)},
+        {"elongation": (2.0, 1.0)},
+        {"roughness": (0.0, 1.5)},
+        {"spread_rad": -1.0},
+        {"angle_rad": math.nan},
+    ):
+        with pytest.raises(ParameterError):
+            Pen("x", **wrong)
+    with pytest.raises(ParameterError):
+        ShapeChange(radius=(math.inf, 0.0))
+
+
+def test_a_change_turns_the_shorter_way():
+    dots = Dots.round([(0, 0)], 1.0)
+    dots.angle_rad[:] = math.radians(170)
+    turned = ShapeChange(angle_rad=0.0).of(dots).angle_rad[0]
+    assert turned == pytest.approx(math.radians(180), abs=1e-5)  # the same axis as 0

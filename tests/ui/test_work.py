@@ -1,0 +1,86 @@
+"""The jobs themselves: kernels prepared in a process of their own, pictures read once."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stippler.errors import PictureError, StipplerError
+from stippler.stippling.plan import Plan
+from stippler.ui import work
+from stippler.ui.work import Source, stipple_picture
+
+PLAN = Plan(n_dots=100, iterations=2)
+
+
+def fake_compiler(monkeypatch: pytest.MonkeyPatch, program: str) -> list[subprocess.Popen[str]]:
+    """Run a program of ours where the kernels would be compiled."""
+    begun: list[subprocess.Popen[str]] = []
+    real = subprocess.Popen
+
+    def popen(_: list[str], **options: Any) -> subprocess.Popen[str]:
+        begun.append(real([sys.executable, "-c", program], **options))
+        return begun[-1]
+
+    monkeypatch.setattr(work.subprocess, "Popen", popen)
+    return begun
+
+
+def test_stages_come_in_order_and_the_picture_is_read_once(picture: Path) -> None:
+    source = Source(picture, "linear", 60.0)
+    steps = list(stipple_picture(source, PLAN, None, is_warm=lambda: True))
+    stages = list(dict.fromkeys(step.stage for step in steps))
+    assert stages == ["read", "first dots", "relax", "tone", "done"]
+    assert steps[0].reference is None
+    reference = steps[1].reference
+    assert reference is not None
+    assert all(step.reference is reference for step in steps[1:])
+    again = list(stipple_picture(source, PLAN, reference, is_warm=lambda: True))
+    assert again[0].stage == "first dots"
+    assert again[-1].progress is not None
+    assert steps[-1].progress is not None
+    assert (again[-1].progress.position_mm == steps[-1].progress.position_mm).all()
+
+
+def test_a_missing_picture_fails_before_anything_is_compiled(tmp_path: Path) -> None:
+    jobs = stipple_picture(Source(tmp_path / "no.png", "linear", 60.0), PLAN, None, is_warm=_never)
+    with pytest.raises(PictureError, match="no such file"):
+        list(jobs)
+
+
+def _never() -> bool:
+    raise AssertionError("asked for kernels")
+
+
+def test_kernels_are_prepared_first(picture: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = fake_compiler(monkeypatch, "print('Compiling: 3/7 tone')")
+    source = Source(picture, "linear", 60.0)
+    stages = [step.stage for step in stipple_picture(source, PLAN, None, is_warm=lambda: False)]
+    assert stages.index("prepare") < stages.index("first dots")
+    assert [process.returncode for process in begun] == [0]
+
+
+def test_preparing_ends_when_the_job_does(picture: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = fake_compiler(
+        monkeypatch,
+        "import time; print('Compiling: 3/7 tone', flush=True); time.sleep(1000)",
+    )
+    source = Source(picture, "linear", 60.0)
+    jobs = stipple_picture(source, PLAN, None, is_warm=lambda: False)
+    for step in jobs:
+        if (step.done, step.total) == (3, 7):
+            break
+    assert begun[0].poll() is None
+    jobs.close()  # type: ignore[attr-defined]
+    assert begun[0].returncode is not None
+
+
+def test_a_compiler_that_fails_is_told(picture: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fake_compiler(monkeypatch, "import sys; sys.exit('no compiler at all')")
+    source = Source(picture, "linear", 60.0)
+    with pytest.raises(StipplerError, match="no compiler at all"):
+        list(stipple_picture(source, PLAN, None, is_warm=lambda: False))
