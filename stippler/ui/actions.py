@@ -71,13 +71,16 @@ def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
             *tools,
             Command("tool.none", "No brush", lambda: painting.toolbox.choose(-1), (Key("v"),)),
             Command(
-                "tool.larger", "Larger tip", lambda: painting.toolbox.resize(1.15), (Key("]"),)
+                "tool.larger",
+                "Larger tip",
+                lambda: painting.toolbox.resize(1.15),
+                (Key("]"), Key("right_bracket")),
             ),
             Command(
                 "tool.smaller",
                 "Smaller tip",
                 lambda: painting.toolbox.resize(1 / 1.15),
-                (Key("["),),
+                (Key("["), Key("left_bracket")),
             ),
             Command("edit.undo", "Undo", painting.undo, (Key("z", CTRL),)),
             Command("edit.redo", "Redo", painting.redo, (Key("z", CTRL_SHIFT), Key("y", CTRL))),
