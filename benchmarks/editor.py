@@ -138,6 +138,12 @@ class _Apart:
 
     def __init__(self) -> None:
         self.spent_s = 0.0
+        self._wrapped: list[tuple[Any, str, Any]] = []
+
+    def unwrap(self) -> None:
+        """Leave the calls as they were."""
+        for owner, name, call in self._wrapped:
+            setattr(owner, name, call)
 
     def wrap(self, owner: Any, name: str) -> None:
         """Time one call wherever it is made."""
@@ -150,6 +156,7 @@ class _Apart:
             finally:
                 self.spent_s += time.perf_counter() - began
 
+        self._wrapped.append((owner, name, call))
         setattr(owner, name, timed)
 
 
@@ -175,6 +182,7 @@ def _frames(repeats: int) -> list[Figure]:
         still, moving = _own_and_all(app, gl, repeats)
     finally:
         app.close()
+        gl.unwrap()
     where = f"{_N_DOTS:,} dots, {_SIZE[0]} x {_SIZE[1]}"
     return [
         Figure(

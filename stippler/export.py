@@ -73,7 +73,8 @@ def _png(drawing: Drawing, dpi: float) -> Iterator[bytes]:
     from stippler.headless import image_size, render_strips
 
     scale = px_per_mm(dpi)
-    return png_chunks(render_strips(drawing, px_per_mm=scale), image_size(drawing, scale), dpi)
+    strips = render_strips(drawing, px_per_mm=scale, grey=True)
+    return png_chunks(strips, image_size(drawing, scale), dpi)
 
 
 _WRITERS: dict[str, Callable[[Drawing, float], Iterator[bytes]]] = {

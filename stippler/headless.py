@@ -46,14 +46,14 @@ def open_context() -> moderngl.Context:
 def image_size(drawing: Drawing, px_per_mm: float) -> Size:
     """Return the (width, height) in pixels of the page at a scale."""
     page = drawing.page
-    size = [round(side * px_per_mm) for side in (page.width_mm, page.height_mm)]
-    width, height = (max(side, 1) for side in size)
-    if not 0 < px_per_mm < float("inf") or max(width, height) > MAX_SIDE_PX:
+    longest = max(page.width_mm, page.height_mm) * px_per_mm
+    if not 0.5 <= longest <= MAX_SIDE_PX:  # also catches NaN
         raise ParameterError(
             f"{px_per_mm:g} pixels a mm make no picture of this page",
-            do=f"keep its longer side between 1 and {MAX_SIDE_PX} pixels",
+            "resolution",
+            f"keep its longer side between 1 and {MAX_SIDE_PX} pixels",
         )
-    return width, height
+    return max(round(page.width_mm * px_per_mm), 1), max(round(page.height_mm * px_per_mm), 1)
 
 
 def render_strips(
@@ -62,32 +62,56 @@ def render_strips(
     px_per_mm: float,
     paper: Color = WHITE,
     ink: Color = BLACK,
+    grey: bool = False,
     context: moderngl.Context | None = None,
 ) -> Iterator[NDArray[np.uint8]]:
-    """Yield the picture of the page from top to bottom in strips of (rows, width, 3) uint8.
+    """Yield the picture of the page from top to bottom in strips.
 
     Parameters
     ----------
+    px_per_mm : float
+        Resolution; `stippler.units.px_per_mm` takes dots per inch.
+    paper, ink : (r, g, b)
+        0..1, encoded for display.
+    grey : bool
+        Only the first channel of paper and ink.
     context : moderngl.Context, optional
-        One to draw in; else one is opened and released.
+        One to draw in; else one is opened and released, and none is current afterwards.
+
+    Yields
+    ------
+    (rows, width, 3) uint8, or (rows, width) if grey
+
+    Raises
+    ------
+    ParameterError
+        If the picture would have no pixels or more than `MAX_SIDE_PX` on a side.
+    DisplayError
+        If a context is to be opened and cannot be.
     """
     size = image_size(drawing, px_per_mm)
     ctx = context or open_context()
     try:
-        yield from _strips(ctx, drawing, px_per_mm, size, paper, ink)
+        yield from _strips(ctx, drawing, size, (paper, ink), 1 if grey else 3)
     finally:
         if context is None:
             ctx.release()
 
 
 def _strips(
-    ctx: moderngl.Context, drawing: Drawing, scale: float, size: Size, paper: Color, ink: Color
+    ctx: moderngl.Context,
+    drawing: Drawing,
+    size: Size,
+    colors: tuple[Color, Color],
+    channels: int,
 ) -> Iterator[NDArray[np.uint8]]:
-    rows = min(max(_STRIP_PX // size[0], 16), size[1])
+    paper, ink = colors
     page = drawing.page
+    rows = min(max(_STRIP_PX // size[0], 16), size[1])
+    scale = max(size[0] / page.width_mm, size[1] / page.height_mm)  # the page covers all pixels
     whole = Camera((page.width_mm / 2, page.height_mm / 2), scale)
     renderer = Renderer(ctx)
-    target = ctx.framebuffer([ctx.renderbuffer((size[0], rows), 3)])
+    target = ctx.framebuffer([ctx.renderbuffer((size[0], rows), channels)])
     try:
         renderer.set_page(page.width_mm, page.height_mm)
         renderer.set_dots(drawing.dots)
@@ -96,8 +120,9 @@ def _strips(
             renderer.draw(
                 camera, (size[0], rows), target, paper=paper, desk=paper, ink=ink, marks=None
             )
-            pixels = np.frombuffer(target.read(components=3, alignment=1), np.uint8)
-            yield pixels.reshape(rows, size[0], 3)[::-1][: size[1] - top]
+            data = np.frombuffer(target.read(components=channels, alignment=1), np.uint8)
+            shape = (rows, size[0], channels)[: 2 if channels == 1 else 3]
+            yield data.reshape(shape)[::-1][: size[1] - top]
     finally:
         release_target(ctx, target)
         renderer.release()
@@ -109,16 +134,14 @@ def render_image(
     px_per_mm: float,
     paper: Color = WHITE,
     ink: Color = BLACK,
+    grey: bool = False,
     context: moderngl.Context | None = None,
 ) -> NDArray[np.uint8]:
-    """Return the picture of the page as (height, width, 3) uint8.
+    """Return the picture of the page as (height, width, 3) uint8, or (height, width) if grey.
 
-    Parameters
-    ----------
-    px_per_mm : float
-        Resolution; `stippler.units.px_per_mm` takes dots per inch.
-    paper, ink : (r, g, b)
-        0..1, encoded for display.
+    The parameters and errors are those of `render_strips`.
     """
-    strips = render_strips(drawing, px_per_mm=px_per_mm, paper=paper, ink=ink, context=context)
+    strips = render_strips(
+        drawing, px_per_mm=px_per_mm, paper=paper, ink=ink, grey=grey, context=context
+    )
     return np.concatenate(list(strips))

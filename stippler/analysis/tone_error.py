@@ -50,7 +50,7 @@ def draw_ink(
     radii : (n,) float64, pixels
     shape : (h, w)
     zoom : int
-        Cells a side of a pixel; the disc's edge is soft over one cell.
+        Samples a side of a pixel.
     """
     h, w = shape
     at = np.ascontiguousarray(points, np.float64) * zoom
@@ -82,7 +82,7 @@ def measure_tone(
     asked = np.asarray(darkness, np.float64)
     h, w = asked.shape
     spacing = math.sqrt(max(float(asked.mean()), 1e-3) * h * w / len(points))
-    zoom = math.ceil(6.0 / float(np.median(radii)))
+    zoom = math.ceil(8.0 / float(np.median(radii)))
     zoom = max(1, min(zoom, int(math.sqrt(_MOST_CELLS / (h * w)))))
     ink = draw_ink(points, radii, (h, w), zoom).astype(np.float64)
     drawn, seen = (gaussian_filter(f, 2.0 * spacing, mode="nearest") for f in (ink, asked))

@@ -19,7 +19,7 @@ DECIMALS = 3
 MAX_DECIMALS = 6
 
 _ROUGH = 1e-3  # less is drawn smooth
-_SEGMENTS = ((_ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
+SEGMENTS = ((_ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
 _BLOCK = 8192
 
 
@@ -84,8 +84,8 @@ def _elements(dots: Dots, rows: NDArray[np.intp], decimals: int) -> Iterator[byt
     for some in _blocks(rows[is_round]):
         yield svg_text.circles(dots.position_mm[some], dots.radius_mm[some], decimals)
     for some in _blocks(rows[smooth & ~is_round]):
-        yield svg_text.paths(dots.take(some), _SEGMENTS[0][1], decimals)
-    for (above, _), (limit, n_segments) in pairwise(_SEGMENTS):
+        yield svg_text.paths(dots.take(some), SEGMENTS[0][1], decimals)
+    for (above, _), (limit, n_segments) in pairwise(SEGMENTS):
         for some in _blocks(rows[(roughness > above) & (roughness <= limit)]):
             yield svg_text.paths(dots.take(some), n_segments, decimals)
 

@@ -22,9 +22,10 @@ def cover(
     row_of: Array,
     field: Array,
 ) -> None:
-    """Draw discs into rows ``start..stop`` of a coverage field; the darker one wins.
+    """Set the cells of rows ``start..stop`` whose centre lies in a disc to 1, others to 0.
 
     `order` sorts the dots by y and `row_of` (h + 1,) says where each row's dots begin in it.
+    Centres know no half-covered cells, so that touching discs leave neither seam nor excess.
     """
     h, w = field.shape
     reach = 0.0
@@ -43,15 +44,9 @@ def cover(
         y1 = min(int(np.ceil(y + r + 0.5)), stop)
         x0 = max(int(np.floor(x - r - 0.5)), 0)
         x1 = min(int(np.ceil(x + r + 0.5)), w)
-        solid = max(r - 0.5, 0.0) ** 2
         for row in range(y0, y1):
             ey = row + 0.5 - y
             for col in range(x0, x1):
                 ex = col + 0.5 - x
-                d2 = ex * ex + ey * ey
-                if d2 <= solid:
+                if ex * ex + ey * ey <= r * r:
                     field[row, col] = 1.0
-                else:
-                    c = r + 0.5 - np.sqrt(d2)
-                    if c > field[row, col]:
-                        field[row, col] = min(c, 1.0)

@@ -402,10 +402,11 @@ def relax_dots(
     Parameters
     ----------
     which, is_all
-        Rows of the dots' arrays; if `is_all` the rows are start..stop themselves and fixed dots
-        are only carried over.
+        Rows of the dots' arrays; if `is_all` the rows are start..stop themselves.
     xs, ys
         Positions, with `simd.SCAN` numbers of padding.
+    fixed
+        Dots that do not move; may be empty.
     slack
         How far a dot may have gone from the grid cell it is listed in.
     mass, moment, frame
@@ -444,7 +445,8 @@ def relax_dots(
     for w in range(start, stop):
         i = w if is_all else which[w]
         x, y = xs[i], ys[i]
-        if is_all and fixed[i] and len(star) == 0:
+        is_fixed = len(fixed) > 0 and fixed[i]
+        if is_fixed and len(star) == 0:
             new_x[i], new_y[i], gone[i] = x, y, 0.0
             continue
         c = compartment_of_dot[i]
@@ -566,7 +568,7 @@ def relax_dots(
             n_star[i] = m if is_packed else 0
             if is_packed:
                 store_lanes(N, star, i)
-        if is_all and fixed[i]:
+        if is_fixed:
             continue
         second = 0.0
         if is_packed and not is_outlined and len(mass) == 0 and len(cells) == 0:

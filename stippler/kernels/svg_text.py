@@ -31,7 +31,7 @@ def _put(out, at, text):
 
 
 @inline
-def _put_number(out, at, value, decimals):
+def put_number(out, at, value, decimals):
     """Write ``value / 10**decimals`` in the fewest characters; return the place after it."""
     if value == 0:
         out[at] = 48
@@ -71,12 +71,12 @@ def _write_circles(start, stop, center, radius, decimals, out, length):
     for i in range(start, stop):
         row = out[i]
         at = _put(row, 0, _CX)
-        at = _put_number(row, at, np.int64(math.floor(center[i, 0] * scale + 0.5)), decimals)
+        at = put_number(row, at, np.int64(math.floor(center[i, 0] * scale + 0.5)), decimals)
         at = _put(row, at, _CY)
-        at = _put_number(row, at, np.int64(math.floor(center[i, 1] * scale + 0.5)), decimals)
+        at = put_number(row, at, np.int64(math.floor(center[i, 1] * scale + 0.5)), decimals)
         at = _put(row, at, _R)
         r = np.int64(math.floor(radius[i] * scale_r + 0.5))
-        at = _put_number(row, at, r, decimals + RADIUS_DECIMALS)
+        at = put_number(row, at, r, decimals + RADIUS_DECIMALS)
         length[i] = _put(row, at, _END)
 
 
@@ -86,7 +86,7 @@ def _put_step(out, at, value, decimals):
     if value >= 0:
         out[at] = 32
         at += 1
-    return _put_number(out, at, value, decimals)
+    return put_number(out, at, value, decimals)
 
 
 @kernel
@@ -102,7 +102,7 @@ def _write_paths(start, stop, chain, decimals, out, length):
         at = _put(row, 0, _D)
         x = np.int64(math.floor(chain[i, 0, 0] * scale + 0.5))
         y = np.int64(math.floor(chain[i, 0, 1] * scale + 0.5))
-        at = _put_number(row, at, x, decimals)
+        at = put_number(row, at, x, decimals)
         at = _put_step(row, at, y, decimals)
         for j in range(1, m + 1):
             px = np.int64(math.floor(chain[i, j % m, 0] * scale + 0.5))
@@ -112,11 +112,11 @@ def _write_paths(start, stop, chain, decimals, out, length):
                     continue
                 row[at] = 99
                 at += 1
-                at = _put_number(row, at, px - x, decimals)
+                at = put_number(row, at, px - x, decimals)
             elif j == 5:
                 row[at] = 115
                 at += 1
-                at = _put_number(row, at, px - x, decimals)
+                at = put_number(row, at, px - x, decimals)
             else:
                 at = _put_step(row, at, px - x, decimals)
             at = _put_step(row, at, py - y, decimals)

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.field import sum_rows
 from stippler.kernels.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.pool import run_ranges
 from stippler.kernels.relaxation import TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.simd import LANES, SCAN
 from stippler.kernels.stars import check_stars, renumber_stars, verify_stars
 from stippler.stippling.compartments import Compartments
-from stippler.stippling.density import DensityField
+from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
 
 Floats = NDArray[np.float64]
@@ -27,8 +24,11 @@ GRAIN = 4096
 FEW = 256
 """Smallest share of a thread where cells are computed one by one, and of a list of them."""
 
-KEEP_BELOW = 0.12
+KEEP_BELOW = 0.25
 """Mean move, in spacings, below which stars are worth keeping."""
+
+MOST_TODO = 0.5
+"""Share of stars that fail from which on all cells are computed from nothing."""
 
 SLACK = 0.5
 """How far, in grid cells, dots may go before they are sorted anew."""
@@ -64,7 +64,7 @@ class Cells:
         self.grid = DotGrid.over(parts, np.bincount(compartment_of_dot, minlength=len(parts)))
         self.spacing = float(np.sqrt(parts.area.sum() / max(n, 1)))
         self._cell_start = np.zeros(self.grid.n_cells + 1, np.int32)
-        self._set_density(density)
+        self._mass, self._moment, self._frame = running_sums(density)
         self._slack = np.inf
         self._keep = False
         self._star = np.zeros((n, LANES), np.int32)
@@ -72,6 +72,11 @@ class Cells:
         self._kind_of_cell = np.zeros(n, np.uint8)
         self._free_of_dot = np.zeros(n)
         self._has_stars = False
+
+    @property
+    def keeps_stars(self) -> bool:
+        """Whether the next step starts from this step's stars."""
+        return self._has_stars and self._keep
 
     @property
     def xy(self) -> Floats:
@@ -84,7 +89,7 @@ class Cells:
     def step(self, cancel: Question = None) -> Floats | None:
         """Move every free dot once; return how far each row went, or None if cancelled."""
         new = np.zeros(self.n + SCAN), np.zeros(self.n + SCAN), np.empty(self.n)
-        done = self._has_stars and self._keep and self._step_from_stars(new, cancel)
+        done = self.keeps_stars and self._step_from_stars(new, cancel)
         if not done:
             self._sort()
             self._has_stars = False
@@ -124,10 +129,11 @@ class Cells:
         """Compute cells from nothing; once more, with more room, those of very many corners."""
         grid, parts = self.grid, self.parts
         mass, moment = (self._mass, self._moment) if weighted else (_NO_CELLS, _NO_CELLS)
+        fixed = self.fixed if not len(cells) else np.empty(0, np.bool_)
         cap, n = CORNER_CAP, self.n if is_all else len(which)
         while n:
             done = run_ranges(
-                relax_dots, n, which, is_all, self.xs, self.ys, self.fixed,
+                relax_dots, n, which, is_all, self.xs, self.ys, fixed,
                 self.compartment_of_dot, self._cell_start, self._slack, grid.real, grid.whole,
                 parts.edges, parts.next_edge, grid.edge_start, grid.edge_of_slot, grid.clear,
                 mass, moment, self._frame, cap, grid.most_edges, self.over,
@@ -155,8 +161,8 @@ class Cells:
             grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
-        self.share = len(which) / max(self.n, 1)
-        self.rounds = [len(which)]
+        if len(which) > MOST_TODO * self.n:
+            return False
         suspect = np.zeros(self.n, np.uint8)
         settled = np.zeros(self.n, np.bool_)
         while done and len(which):
@@ -166,7 +172,6 @@ class Cells:
             suspect[:] = 0
             run_ranges(check_stars, len(rows), rows, self._star, self._n_star, todo, grain=1024)
             which = rows[todo[rows] != 0]
-            self.rounds.append(len(which))
         return done
 
     def _sort(self, with_stars: bool = False) -> None:
@@ -195,16 +200,3 @@ class Cells:
         self._n_star = self._n_star[order]
         self._kind_of_cell = self._kind_of_cell[order]
         self._free_of_dot = self._free_of_dot[order]
-
-    def _set_density(self, density: DensityField | None) -> None:
-        self._frame = np.array([0.0, 0.0, 1.0, 1.0])
-        self._mass: NDArray[Any] = _NO_CELLS
-        self._moment: NDArray[Any] = _NO_CELLS
-        if density is None:
-            return
-        h, w = density.values.shape
-        self._mass, self._moment = np.empty((h, w + 1)), np.empty((h, w + 1))
-        values = np.ascontiguousarray(density.values, np.float32)
-        run_ranges(sum_rows, h, values, self._mass, self._moment, grain=64)
-        sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
-        self._frame = np.array([*density.origin_mm, *sides])

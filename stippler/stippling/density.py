@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.errors import ParameterError
+from stippler.kernels.field import sum_rows
+from stippler.kernels.pool import run_ranges
 
 Density = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
@@ -69,3 +71,20 @@ class DensityField:
             raise ParameterError("a density is a 2-d field with at least one pixel", "density")
         h, w = values.shape
         return cls(values, (float(x1 - x0) / w, float(y1 - y0) / h), (float(x0), float(y0)))
+
+
+def running_sums(
+    density: DensityField | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return running sums of mass and moment along rows, and origin and sides; see `field`.
+
+    Without a density the sums are empty.
+    """
+    if density is None:
+        return np.empty((0, 4)), np.empty((0, 4)), np.array([0.0, 0.0, 1.0, 1.0])
+    h, w = density.values.shape
+    mass, moment = np.empty((h, w + 1)), np.empty((h, w + 1))
+    values = np.ascontiguousarray(density.values, np.float32)
+    run_ranges(sum_rows, h, values, mass, moment, grain=64)
+    sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
+    return mass, moment, np.array([*density.origin_mm, *sides])

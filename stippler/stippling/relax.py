@@ -18,6 +18,8 @@ from stippler.stippling.density import Density, DensityField
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 
+METHODS = ("lloyd", "delaunay-mean", "springs")
+
 Cancel = Callable[[], bool] | threading.Event | None
 
 
@@ -67,6 +69,8 @@ class Relaxation:
         no mass keeps its place.
     over_relaxation : float
         The share of the way to the centroid that a dot goes, above 0 and below 2.
+    method : {"lloyd", "delaunay-mean", "springs"}
+        The other two are the paper's comparisons.
 
     Raises
     ------
@@ -88,7 +92,14 @@ class Relaxation:
         compartment_of_dot: ArrayLike | None = None,
         density: DensityField | None = None,
         over_relaxation: float = 1.0,
+        *,
+        method: str = "lloyd",
     ) -> None:
+        if method not in METHODS:
+            raise ParameterError(
+                f"{method!r} is not known", "method", f"give one of {', '.join(METHODS)}"
+            )
+        self._method = method
         xy = _checked_points(points)
         n = len(xy)
         self._fixed = _checked(fixed, n, np.bool_, "fixed", False)
@@ -103,6 +114,7 @@ class Relaxation:
         found = self._parts.find(xy, shape_of_dot)
         self._refuse_empty(found)
         self._part_coinciding(xy, found)
+        self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over_relaxation))
 
     @property
@@ -175,6 +187,8 @@ class Relaxation:
         return float(self._cells.measure(weighted=False)[:, 3].sum())
 
     def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
+        if self._method != "lloyd":
+            return self._step_by_neighbours()
         gone = self._cells.step(cancel)
         if gone is None:
             return None
@@ -183,6 +197,22 @@ class Relaxation:
             return StepReport(0.0, 0.0, 0)
         return StepReport(
             float(gone.sum()) / n_free, float(gone.max()), int(np.count_nonzero(gone))
+        )
+
+    def _step_by_neighbours(self) -> StepReport:
+        from stippler.stippling.delaunay import step_by_neighbours
+
+        before, cells = self._cells.xy, self._cells
+        owner = np.empty(len(self), np.int32)
+        owner[cells.order] = cells.compartment_of_dot
+        after = step_by_neighbours(before, self._fixed, owner, self._parts, self._method)
+        self._cells = Cells(after, self._fixed, owner, self._parts, self._density, cells.over)
+        gone = np.hypot(*(after - before).T)
+        n_free = max(len(self) - int(np.count_nonzero(self._fixed)), 1)
+        return StepReport(
+            float(gone.sum()) / n_free,
+            float(gone.max(initial=0.0)),
+            int(np.count_nonzero(gone)),
         )
 
     def _refuse_empty(self, compartment_of_dot: NDArray[np.int32]) -> None:
@@ -233,6 +263,8 @@ def relax(
     fixed: ArrayLike | None = None,
     density: ArrayLike | Density | DensityField | None = None,
     *,
+    method: str = "lloyd",
+    compartment_of_dot: ArrayLike | None = None,
     tolerance_mm: float = 0.0,
     over_relaxation: float = 1.0,
 ) -> NDArray[np.float64]:
@@ -250,9 +282,9 @@ def relax(
     density : (h, w) array_like, callable or DensityField, optional
         Weight: an array over the polygon's bounding box, row 0 at its least y, or a function
         of arrays x and y.
-    tolerance_mm : float
-        Stop once no dot moves further in a step.
-    over_relaxation : float
+    method : {"lloyd", "delaunay-mean", "springs"}
+        The other two are for comparison: they know no border and no density.
+    compartment_of_dot, tolerance_mm, over_relaxation
         See `Relaxation`.
 
     Returns
@@ -270,7 +302,9 @@ def relax(
         boxes = Compartments.of(polygon).box
         box = np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
         density = DensityField.over_box(density, box, np.size(points) // 2)
-    engine = Relaxation(points, polygon, fixed, density=density, over_relaxation=over_relaxation)
+    engine = Relaxation(
+        points, polygon, fixed, compartment_of_dot, density, over_relaxation, method=method
+    )
     engine.run(iterations, tolerance_mm)
     return np.array(engine.points)
 

@@ -18,6 +18,7 @@ PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".gif")
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # what the native dialogs need on Linux
 _LISTED = 400
 _WIDTH, _LIST_HEIGHT = 520.0, 240.0
+_FLAGS = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_title_bar
 
 
 def has_native_dialogs() -> bool:
@@ -137,8 +138,9 @@ class Dialogs:
     def _draw_own(self, widgets: Widgets, own: _Own) -> None:
         imgui.open_popup(own.title)
         _center(_WIDTH * widgets.scale)
-        if not imgui.begin_popup_modal(own.title, None, imgui.WindowFlags_.no_resize)[0]:
+        if not imgui.begin_popup_modal(own.title, None, _FLAGS)[0]:
             return
+        widgets.heading(own.title)
         if own.fresh:
             imgui.set_keyboard_focus_here()
             own.fresh = False
@@ -166,8 +168,9 @@ class Dialogs:
         title = "Replace the file?"
         imgui.open_popup(title)
         _center(420.0 * widgets.scale)
-        if not imgui.begin_popup_modal(title, None, imgui.WindowFlags_.no_resize)[0]:
+        if not imgui.begin_popup_modal(title, None, _FLAGS)[0]:
             return
+        widgets.heading(title)
         imgui.push_text_wrap_pos(0.0)
         imgui.text_unformatted(f"{path.name} is there already.")
         imgui.pop_text_wrap_pos()
@@ -191,7 +194,7 @@ def _draw_verbs(widgets: Widgets, verb: str) -> tuple[bool, bool]:
     """Draw the verb and "Cancel" at the right; return which was pressed. Esc cancels."""
     width, gap = 104.0 * widgets.scale, 8.0 * widgets.scale
     imgui.dummy((0.0, 2.0 * widgets.scale))
-    imgui.set_cursor_pos_x(imgui.get_window_width() - 2 * width - gap - 16.0 * widgets.scale)
+    imgui.set_cursor_pos_x(imgui.get_window_width() - 2 * width - gap - widgets.margin)
     cancelled = widgets.button("Cancel", "Leave everything as it is.", width=width)
     imgui.same_line(0.0, gap)
     pressed = widgets.button(verb, f"{verb} this file.", width=width, primary=True)

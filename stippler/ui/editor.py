@@ -36,6 +36,7 @@ from stippler.ui.widgets import Rect, Widgets
 from stippler.ui.window import Window
 
 _CARET_S = 0.4  # a text field's caret blinks
+_MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
 
 
@@ -81,6 +82,8 @@ class Editor:
 
     def sleep_s(self) -> float:
         """Return how long nothing needs to be drawn, if nothing happens."""
+        if 0 in self._window.size_px:  # minimised
+            return _MINIMISED_S
         return self._schedule.sleep_s(self._clock())
 
     def step(self) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-_FRAMES_AFTER_INPUT = 3  # ImGui settles in two or three
+_FRAMES_AFTER_INPUT = 5  # a click takes ImGui three: move, press, release; then it settles
 _TOOLTIP_S = 0.5  # a resting pointer may want its tooltip after this
 _LONGEST_SLEEP_S = 10.0
 _FREE_S = 0.02  # frames this fast need no rest

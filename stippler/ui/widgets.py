@@ -42,6 +42,11 @@ class Widgets:
         """Between two controls side by side."""
         return 8.0 * self.scale
 
+    @property
+    def margin(self) -> float:
+        """Between the edge of a panel and its controls."""
+        return 16.0 * self.scale
+
     # --- text -------------------------------------------------------------------------------
 
     def heading(self, text: str) -> None:
@@ -159,17 +164,15 @@ class Widgets:
         self.tip(tip)
         return typed if done else value
 
-    def slider(
-        self, label: str, value: float, low: float, high: float, tip: str, form: str = "%.0f"
-    ) -> float:
-        """Take a number by dragging; Ctrl and a click types it."""
-        self.label(label)
-        _, value = imgui.slider_float(
-            f"##{label}", value, low, high, form, imgui.SliderFlags_.always_clamp
+    def share(self, label: str, value: float, tip: str) -> float:
+        """Take a share of 0..1, shown in percent, by dragging in the rest of the line."""
+        imgui.set_next_item_width(-1.0)
+        _, percent = imgui.slider_float(
+            f"##{label}", 100 * value, 0.0, 100.0, "%.0f %%", imgui.SliderFlags_.always_clamp
         )
         self.note(label)
         self.tip(tip)
-        return value
+        return percent / 100
 
     def check(self, label: str, value: bool, tip: str) -> bool:
         """Take a yes or no."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +26,12 @@ class Desk:
 
 
 @pytest.fixture(scope="session")
+def kernels() -> None:
+    """Compiled kernels, so that no test waits for them where a person would be told."""
+    subprocess.run([sys.executable, "-m", "stippler.warm"], check=True, capture_output=True)
+
+
+@pytest.fixture(scope="session")
 def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A dark disc on white, 120 x 90."""
     y, x = np.mgrid[0:90, 0:120]
@@ -34,7 +42,7 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def desk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Desk]:
+def desk(kernels: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Desk]:
     """An empty editor of 1000 x 700, few dots planned, in a folder of its own."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("STIPPLER_SCALE", raising=False)

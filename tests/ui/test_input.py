@@ -284,7 +284,7 @@ def drawn(schedule: Schedule, now: float, cost: float = 0.01, **more: Any) -> in
 
 def test_nothing_is_drawn_while_nothing_changes() -> None:
     schedule = Schedule()
-    assert drawn(schedule, 0.0) == 3
+    assert drawn(schedule, 0.0) == 5
     assert schedule.sleep_s(0.0) == 10.0
     assert not schedule.due(9.9)
 
@@ -294,7 +294,7 @@ def test_input_is_drawn_at_once_and_once_more_for_the_tooltip() -> None:
     drawn(schedule, 0.0)
     schedule.note_input(1.0)
     assert schedule.sleep_s(1.0) == 0.0
-    assert drawn(schedule, 1.0) == 3
+    assert drawn(schedule, 1.0) == 5
     assert schedule.sleep_s(1.0) == pytest.approx(0.5)
     assert drawn(schedule, 1.6) == 1
     assert schedule.sleep_s(1.6) == 10.0

@@ -172,7 +172,7 @@ def test_a_selection_is_made_and_worked_on(desk, picture: Path) -> None:
     paint(desk, (40, 30), (80, 60))
     painting = desk.app.editor.painting
     chosen = painting.n_selected
-    assert 0 < chosen
+    assert chosen > 0
     desk.app.editor.show_panel(BRUSH)
     desk.host.settle()
     for label in ("Fix dots", "Free dots", "Relax dots", "Jitter dots", "Larger", "Smaller"):

@@ -164,7 +164,7 @@ def test_the_page_is_drawn_only_when_it_changes(desk, picture: Path) -> None:
     assert canvas.n_drawn == drawn
     desk.app.editor.show_panel(VIEW)
     desk.host.settle()
-    desk.host.click("Show the picture")
+    desk.host.click("Show picture")
     assert canvas.n_drawn > drawn
 
 
@@ -294,7 +294,7 @@ def test_it_sleeps_when_nothing_changes(desk, picture: Path) -> None:
     assert desk.app.editor.n_frames == frames
 
 
-def test_closing_while_work_runs_ends_at_once(picture: Path) -> None:
+def test_closing_while_work_runs_ends_at_once(kernels: None, picture: Path) -> None:
     from stippler.app import App
 
     app = App(Plan(n_dots=300, iterations=100_000), tone="linear", width_mm=50.0, offscreen=True)

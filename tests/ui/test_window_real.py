@@ -117,7 +117,7 @@ class Desk:
 
 
 @pytest.fixture
-def start(display: str) -> Iterator[Callable[..., Desk]]:
+def start(kernels: None, display: str) -> Iterator[Callable[..., Desk]]:
     desks: list[Desk] = []
 
     def begin(*arguments: str) -> Desk:

@@ -174,7 +174,7 @@ def _draw_progress(widgets: Widgets, session: Session) -> None:
     elif session.outdated and session.n_dots:
         widgets.progress(0.0, "values changed; start to use them")
     else:
-        widgets.progress(1.0 if session.phase == "done" else 0.0, _OUTCOMES[session.phase])
+        widgets.progress(0.0, _OUTCOMES[session.phase])
 
 
 def _progress_text(session: Session) -> str:

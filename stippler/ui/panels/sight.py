@@ -13,6 +13,13 @@ from stippler.ui.widgets import Widgets
 def draw_view(widgets: Widgets, look: Look, commands: Commands) -> None:
     """Draw the section."""
     widgets.heading("View")
+    imgui.same_line(imgui.get_content_region_avail().x - imgui.get_frame_height() + widgets.margin)
+    imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 5.0 * widgets.scale)
+    light = look.theme is LIGHT
+    if widgets.icon_button(
+        "theme", ICON_LIGHT if light else ICON_DARK, f"{commands['view.theme'].hint}."
+    ):
+        commands["view.theme"].run()
     width = (imgui.get_content_region_avail().x - widgets.gap) / 2
     for name, label, icon, tip in (
         ("view.fit", "Fit", ICON_FIT, "show the whole page."),
@@ -23,24 +30,8 @@ def draw_view(widgets: Widgets, look: Look, commands: Commands) -> None:
         imgui.same_line(0.0, widgets.gap)
     imgui.new_line()
     look.reference_shown = widgets.check(
-        "Show the picture", look.reference_shown, f"{commands['view.reference'].hint}."
+        "Show picture", look.reference_shown, f"{commands['view.reference'].hint}."
     )
     if look.reference_shown:
-        percent = widgets.slider(
-            "Opacity",
-            look.opacity * 100,
-            0,
-            100,
-            "Of the picture under the dots, in percent.",
-            "%.0f %%",
-        )
-        look.opacity = percent / 100
-    light = look.theme is LIGHT
-    widgets.label("Desk")
-    if widgets.button(
-        "Light" if light else "Dark",
-        commands["view.theme"].hint,
-        icon=ICON_LIGHT if light else ICON_DARK,
-        width=-1.0,
-    ):
-        commands["view.theme"].run()
+        imgui.same_line(0.0, widgets.gap)
+        look.opacity = widgets.share("Opacity", look.opacity, "Of the picture under the dots.")

@@ -52,16 +52,20 @@ def draw_status(
     )
     imgui.push_style_var(imgui.StyleVar_.window_padding, (16.0 * widgets.scale, 0.0))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     imgui.begin("##status", None, flags)
+    top = imgui.get_window_pos()
+    line = imgui.get_color_u32(imgui.Col_.border)
+    imgui.get_window_draw_list().add_line(top, (top.x + viewport.size.x, top.y), line)
     imgui.push_font(None, SMALL_PX)
     imgui.set_cursor_pos_y((height - imgui.get_text_line_height()) / 2)
     message = session.messages.current
-    line = message.text if message is not None and message.level == INFO else _summary(session)
-    imgui.text_unformatted(line)
+    said = message is not None and message.level == INFO
+    imgui.text_unformatted(message.text if message and said else _summary(session))
     _draw_fields(widgets, _fields(session, pointer_mm, zoom, frames))
     imgui.pop_font()
     imgui.end()
-    imgui.pop_style_var(2)
+    imgui.pop_style_var(3)
 
 
 def _summary(session: Session) -> str:

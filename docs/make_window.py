@@ -1,0 +1,71 @@
+"""Make `docs/window.png`: the real window on a sample, under Xvfb.
+
+``python docs/make_window.py [--size WxH] [--dots N] [OUT]``; needs Xvfb and xdotool.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from PIL import ImageGrab
+
+ROOT = Path(__file__).resolve().parent.parent
+EDITOR = "from stippler.cli import main; main()"
+
+
+def main() -> None:
+    """Start a display, open the editor, wait until its work is over, take the picture."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("out", nargs="?", type=Path, default=ROOT / "docs" / "window.png")
+    options.add_argument("--size", default="1280x800")
+    options.add_argument("--dots", default="60000")
+    chosen = options.parse_args()
+    reads, writes = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writes), "-screen", "0", f"{chosen.size}x24"],
+        pass_fds=[writes],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writes)
+    with os.fdopen(reads) as told:
+        display = f":{told.readline().strip()}"
+    env = {**os.environ, "DISPLAY": display}
+    sample = ROOT / "assets" / "samples" / "ammonite.png"
+    editor = subprocess.Popen(
+        [sys.executable, "-c", EDITOR, str(sample), "--dots", chosen.dots],
+        env=env,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        wait_until_idle(editor.pid)
+        width, height = (int(side) for side in chosen.size.split("x"))
+        place = (str(width * 0.62), str(height * 0.47))
+        subprocess.run(["xdotool", "mousemove", *place], env=env, check=True)
+        time.sleep(1.0)
+        ImageGrab.grab(xdisplay=display).convert("RGB").save(chosen.out, optimize=True)
+    finally:
+        editor.terminate()
+        editor.wait()
+        server.terminate()
+        server.wait()
+
+
+def wait_until_idle(pid: int) -> None:
+    """Wait until a process has taken no processor time to speak of for two seconds; Linux."""
+    last, quiet_since = 0.0, time.monotonic()
+    while time.monotonic() - quiet_since < 2.0:
+        time.sleep(0.25)
+        numbers = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+        spent = (int(numbers[11]) + int(numbers[12])) / os.sysconf("SC_CLK_TCK")
+        if spent - last > 0.03 or spent < 1.0:
+            quiet_since = time.monotonic()
+        last = spent
+
+
+if __name__ == "__main__":
+    main()

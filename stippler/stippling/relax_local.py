@@ -1,0 +1,201 @@
+"""Relaxation of the few dots under a brush, at a cost that depends on them alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stippler.errors import ParameterError
+from stippler.kernels.buckets import find_in_circle, place_dots
+from stippler.kernels.pool import run_ranges
+from stippler.kernels.relaxation import TOO_MANY_CORNERS, relax_dots
+from stippler.kernels.simd import LANES, SCAN
+from stippler.stippling.cells import CORNER_CAP
+from stippler.stippling.compartments import Compartments, Shape
+from stippler.stippling.density import DensityField, running_sums
+from stippler.stippling.dotgrid import DotGrid
+
+_NO_STARS = np.empty((0, LANES), np.int32)
+_NO_FLAGS = np.empty(0, np.uint8)
+
+
+class LocalRelaxation:
+    """All dots of a drawing in a grid that follows every change, to relax some of them.
+
+    Dots keep the number they were given in, or that `add` returned.
+
+    Parameters
+    ----------
+    points, polygon, compartment_of_dot, density
+        As for `stippler.stippling.relax.Relaxation`.
+
+    Notes
+    -----
+    A step over k dots is O(k), whatever the size of the drawing.
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        polygon: Shape | Sequence[Shape] | ArrayLike,
+        compartment_of_dot: ArrayLike | None = None,
+        density: DensityField | None = None,
+    ) -> None:
+        xy = np.array(points, np.float64).reshape(-1, 2)
+        self._parts = Compartments.of(polygon)
+        self._compartment = self._find(xy, compartment_of_dot)
+        self._slot_of_dot = np.full(len(xy), -1, np.int32)
+        self._mass, self._moment, self._frame = running_sums(density)
+        self._build(np.arange(len(xy), dtype=np.int32), xy)
+
+    def __len__(self) -> int:
+        """Return how many dots there are, without those removed."""
+        return int(self._count.sum())
+
+    def positions(self, dots: ArrayLike) -> NDArray[np.float64]:
+        """Return the places of dots, (k, 2), mm; NaN for those removed."""
+        slots = self._slot_of_dot[np.asarray(dots, np.int64)]
+        out = np.column_stack([self._xs[slots], self._ys[slots]])
+        out[slots < 0] = np.nan
+        return out
+
+    def find(self, x_mm: float, y_mm: float, radius_mm: float) -> NDArray[np.int32]:
+        """Return the numbers of the dots in a circle, ascending."""
+        found = np.empty(1024, np.int32)
+        while True:
+            n = find_in_circle(
+                float(x_mm), float(y_mm), float(radius_mm), self._room, self._grid.real,
+                self._grid.whole, self._count, self._xs, self._ys, self._dot_of_slot, found,
+            )  # fmt: skip
+            if n <= len(found):
+                return np.sort(found[:n])
+            found = np.empty(n, np.int32)
+
+    def relax(self, dots: ArrayLike, steps: int = 1) -> NDArray[np.float64]:
+        """Move these dots to the centroids of their cells, all others holding still.
+
+        Parameters
+        ----------
+        dots : (k,) array_like of int
+            Each once; leave fixed dots out.
+        steps : int
+
+        Returns
+        -------
+        (k, 2) float64, mm
+            Where they are now.
+        """
+        chosen = np.asarray(dots, np.int32)
+        for _ in range(steps):
+            slots = self._slot_of_dot[chosen]
+            if len(slots) and slots.min() < 0:
+                raise ParameterError("has been removed", f"dot {chosen[int(slots.argmin())]}")
+            self._compute(slots)
+            self._place(chosen, self._new_x[slots], self._new_y[slots], self._compartment[chosen])
+        return self.positions(chosen)
+
+    def move(self, dots: ArrayLike, points: ArrayLike) -> None:
+        """Put dots somewhere else, within a compartment.
+
+        Raises
+        ------
+        GeometryError
+            If a place lies outside; nothing has moved then.
+        """
+        chosen = np.asarray(dots, np.int32)
+        xy = np.asarray(points, np.float64).reshape(-1, 2)
+        self._compartment[chosen] = self._find(xy, None)
+        self._place(chosen, xy[:, 0].copy(), xy[:, 1].copy(), self._compartment[chosen])
+
+    def add(self, points: ArrayLike) -> NDArray[np.int32]:
+        """Add dots; return their numbers."""
+        xy = np.asarray(points, np.float64).reshape(-1, 2)
+        owner = self._find(xy, None)
+        before = len(self._slot_of_dot)
+        dots = np.arange(before, before + len(xy), dtype=np.int32)
+        self._slot_of_dot = np.append(self._slot_of_dot, np.full(len(xy), -1, np.int32))
+        self._compartment = np.append(self._compartment, owner)
+        self._place(dots, xy[:, 0].copy(), xy[:, 1].copy(), owner)
+        return dots
+
+    def remove(self, dots: ArrayLike) -> None:
+        """Take dots out; their numbers are not used again."""
+        chosen = np.asarray(dots, np.int32)
+        gone = np.full(len(chosen), np.nan)
+        self._place(chosen, gone, gone, self._compartment[chosen])
+
+    def _find(
+        self, xy: NDArray[np.float64], compartment_of_dot: ArrayLike | None
+    ) -> NDArray[np.int32]:
+        if not np.isfinite(xy).all():
+            raise ParameterError("positions have to be finite", "dots")
+        owner = None
+        if compartment_of_dot is not None:
+            owner = np.asarray(compartment_of_dot, np.int32)
+        return self._parts.find(xy, owner)
+
+    def _compute(self, slots: NDArray[np.int32]) -> None:
+        grid, parts, cap = self._grid, self._parts, CORNER_CAP
+        no_cells = np.empty((0, 4))
+        while len(slots):
+            run_ranges(
+                relax_dots, len(slots), slots, False, self._xs, self._ys, self._fixed,
+                self._compartment_of_slot, self._cell_start, 0.0, grid.real, grid.whole,
+                parts.edges, parts.next_edge, grid.edge_start, grid.edge_of_slot, grid.clear,
+                self._mass, self._moment, self._frame, cap, grid.most_edges, 1.0,
+                self._new_x, self._new_y, self._gone, no_cells, self._kind, self._free,
+                _NO_STARS, _NO_FLAGS, _NO_FLAGS, grain=128, chunks=2,
+            )  # fmt: skip
+            slots = slots[self._kind[slots] == TOO_MANY_CORNERS]
+            cap *= 16
+
+    def _place(
+        self,
+        dots: NDArray[np.int32],
+        x: NDArray[np.float64],
+        y: NDArray[np.float64],
+        compartment: NDArray[np.int32],
+    ) -> None:
+        done = place_dots(
+            dots, x, y, compartment, self._room, self._grid.real, self._grid.whole, self._count,
+            self._xs, self._ys, self._compartment_of_slot, self._dot_of_slot, self._slot_of_dot,
+        )  # fmt: skip
+        if done == len(dots):
+            return
+        # a grid cell is full: lay the grid anew, with all dots where they are or should be
+        everyone = np.arange(len(self._slot_of_dot), dtype=np.int32)
+        xy = self.positions(everyone)
+        xy[dots, 0], xy[dots, 1] = x, y
+        there = np.isfinite(xy[:, 0])
+        self._build(everyone[there], xy[there])
+
+    def _build(self, dots: NDArray[np.int32], xy: NDArray[np.float64]) -> None:
+        compartment = self._compartment[dots]
+        n_dots = np.bincount(compartment, minlength=len(self._parts))
+        self._grid = DotGrid.over(self._parts, n_dots)
+        self._room = 4
+        done = -1
+        while done < len(dots):
+            self._room += 4
+            self._lay_out(self._grid.n_cells * self._room)
+            self._slot_of_dot[:] = -1
+            done = place_dots(
+                dots, xy[:, 0].copy(), xy[:, 1].copy(), compartment, self._room, self._grid.real,
+                self._grid.whole, self._count, self._xs, self._ys, self._compartment_of_slot,
+                self._dot_of_slot, self._slot_of_dot,
+            )  # fmt: skip
+
+    def _lay_out(self, n_slots: int) -> None:
+        n_cells = self._grid.n_cells
+        self._count = np.zeros(n_cells, np.int32)
+        self._cell_start = (np.arange(n_cells + 1) * self._room).astype(np.int32)
+        self._xs = np.full(n_slots + SCAN, np.nan)
+        self._ys = np.full(n_slots + SCAN, np.nan)
+        self._compartment_of_slot = np.zeros(n_slots, np.int32)
+        self._dot_of_slot = np.full(n_slots, -1, np.int32)
+        self._fixed = np.zeros(0, np.bool_)
+        self._new_x, self._new_y = np.empty(n_slots), np.empty(n_slots)
+        self._gone, self._free = np.empty(n_slots), np.empty(n_slots)
+        self._kind = np.zeros(n_slots, np.uint8)
