@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from stippler.drawing.editing import Editing
 from stippler.drawing.reference import Reference
 from stippler.drawing.store import Rows
-from stippler.stippling.relax import DensityField, Relaxation
+from stippler.stippling.density import DensityField
+from stippler.stippling.relax_local import LocalRelaxation
 
 Floats = NDArray[np.float64]
 
@@ -27,8 +28,7 @@ def centroids_of(editing: Editing, rows: Rows, reference: Reference | None = Non
     """
     out = np.array(editing.dots.position_mm[rows])
     for engine, mine, which in _engines(editing, rows, reference):
-        engine.step()
-        out[which] = engine.points[mine]
+        out[which] = engine.relax(mine)
     return out
 
 
@@ -36,32 +36,30 @@ def areas_of(editing: Editing, rows: Rows) -> Floats:
     """Return the areas of the dots' cells among all dots around, mm²; 0 where it is not known."""
     out = np.zeros(len(rows))
     for engine, mine, which in _engines(editing, rows, None):
-        out[which] = engine.cell_areas()[mine]
+        out[which] = engine.cell_areas(mine)
     return out
 
 
 def _engines(
     editing: Editing, rows: Rows, reference: Reference | None
-) -> Iterator[tuple[Relaxation, NDArray[np.bool_], NDArray[np.intp]]]:
-    """Yield for each area a relaxation of its dots, which of its dots are asked for, and where."""
+) -> Iterator[tuple[LocalRelaxation, NDArray[np.intp], NDArray[np.intp]]]:
+    """Yield for each area an engine of the dots around, those asked for in it, and in `rows`."""
     if not len(rows):
         return
     around = _box_around(editing, editing.dots.position_mm[rows])
     near = editing.in_box(around)
     near_area = editing.dots.area[near]
     for k in np.unique(editing.dots.area[rows]):
-        outline = editing.drawing.areas[int(k)].outline_mm
-        polygon = shapely.clip_by_rect(outline, *around)
+        polygon = shapely.clip_by_rect(editing.drawing.areas[int(k)].outline_mm, *around)
         if polygon.is_empty or polygon.geom_type not in ("Polygon", "MultiPolygon"):
             continue
         own = near[near_area == k]
         xy = editing.dots.position_mm[own]
         own = own[shapely.intersects_xy(polygon, xy[:, 0], xy[:, 1])]
-        mine = np.isin(own, rows, assume_unique=True)
-        if mine.any():
-            points = editing.dots.position_mm[own]
+        mine = np.flatnonzero(np.isin(own, rows, assume_unique=True))
+        if len(mine):
             density = _density(reference, around)
-            engine = Relaxation(points, polygon, fixed=~mine, density=density)
+            engine = LocalRelaxation(editing.dots.position_mm[own], polygon, density=density)
             yield engine, mine, np.searchsorted(rows, own[mine])
 
 

@@ -107,7 +107,8 @@ def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Itera
     yield Work("relax", 0, iterations)
     import numpy as np
 
-    from stippler.stippling.relax import DensityField, Relaxation
+    from stippler.stippling.density import DensityField
+    from stippler.stippling.relax import Relaxation
 
     dots, reference = drawing.dots, drawing.reference
     used, shape_of_dot = np.unique(dots.area, return_inverse=True)
