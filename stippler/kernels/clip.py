@@ -33,7 +33,7 @@ def _rim_position(cell: F8, m: int, k: int, u: float, v: float) -> float:
     if length2 == 0.0:
         return float(k)
     t = ((u - cell[0, k]) * du + (v - cell[1, k]) * dv) / length2
-    return k + min(max(t, 0.0), 1.0)
+    return float(k + min(max(t, 0.0), 1.0))
 
 
 @kernel
@@ -64,7 +64,7 @@ def _clip_edge(
 
 @inline
 def _is_inside(cell: F8, m: int, u: float, v: float) -> bool:
-    for k in range(m):
+    for k in range(m):  # noqa: SIM110 - a kernel
         if cell[2, k] * u + cell[3, k] * v - cell[4, k] > 0.0:
             return False
     return True

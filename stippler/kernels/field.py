@@ -39,13 +39,13 @@ def integrate_edge(
     The edge runs from (x + ax, y + ay) to (x + bx, y + by). Outside the field f is 0.
     """
     h, w = mass.shape[0], mass.shape[1] - 1
-    base = min(max(int(math.floor(x)), 0), w)
+    base = min(max(math.floor(x), 0), w)
     m = mx = my = 0.0
     if ay == by:
         return m, mx, my
     up = 1 if by > ay else -1
-    r = int(math.floor(y + ay)) if up > 0 else int(math.ceil(y + ay)) - 1
-    r_last = int(math.ceil(y + by)) - 1 if up > 0 else int(math.floor(y + by))
+    r = math.floor(y + ay) if up > 0 else math.ceil(y + ay) - 1
+    r_last = math.ceil(y + by) - 1 if up > 0 else math.floor(y + by)
     slope = (bx - ax) / (by - ay)
     right = 1 if bx > ax else -1
     ua, va = ax, ay
@@ -54,8 +54,8 @@ def integrate_edge(
         v_end = by if is_last else (r + (up > 0)) - y
         u_end = bx if is_last else ax + (v_end - ay) * slope
         if 0 <= r < h:
-            c = int(math.floor(x + ua)) if right > 0 else int(math.ceil(x + ua)) - 1
-            c_last = int(math.ceil(x + u_end)) - 1 if right > 0 else int(math.floor(x + u_end))
+            c = math.floor(x + ua) if right > 0 else math.ceil(x + ua) - 1
+            c_last = math.ceil(x + u_end) - 1 if right > 0 else math.floor(x + u_end)
             m0, q0 = mass[r, base], moment[r, base]
             while True:
                 in_last = c == c_last or (c - c_last) * right > 0

@@ -16,11 +16,12 @@ from stippler.kernels.lean import importing_numba
 
 with importing_numba():
     import numba
+    import numba.core.config
     import numba.np.arraymath
-    from numba.core import config
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+config: Any = numba.core.config  # its names appear at run time
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 
 

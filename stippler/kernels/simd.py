@@ -30,8 +30,14 @@ SCAN = 8
 _F8, _I4, _I8 = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _FAST = ("contract",)
 
-Doubles = Any
-Ints = Any
+
+def _operation(generator: Callable[..., Any]) -> Any:
+    """Make a kernels' function of one that returns a signature and a generator of LLVM code."""
+    return intrinsic(generator)
+
+
+def _literal_operation(generator: Callable[..., Any]) -> Any:
+    return intrinsic(prefer_literal=True)(generator)
 
 
 def _splat(builder: Any, value: Any, lanes: int) -> Any:
@@ -105,7 +111,7 @@ def _data(context: Any, builder: Any, array_type: Any, array: Any) -> Any:
     return cgutils.create_struct_proxy(array_type)(context, builder, value=array).data
 
 
-@intrinsic(prefer_literal=True)
+@_literal_operation
 def stack_doubles(typing_context: Any, n: Any) -> Any:
     """Return a pointer to n doubles on the stack, n a literal."""
     size = n.literal_value
@@ -118,7 +124,7 @@ def stack_doubles(typing_context: Any, n: Any) -> Any:
     return types.CPointer(types.float64)(n), generate
 
 
-@intrinsic(prefer_literal=True)
+@_literal_operation
 def stack_ints(typing_context: Any, n: Any) -> Any:
     """Return a pointer to n 32-bit integers on the stack, n a literal."""
     size = n.literal_value
@@ -131,7 +137,7 @@ def stack_ints(typing_context: Any, n: Any) -> Any:
     return types.CPointer(types.int32)(n), generate
 
 
-@intrinsic
+@_operation
 def get(typing_context: Any, pointer: Any, index: Any) -> Any:
     """Return ``pointer[index]``."""
 
@@ -141,7 +147,7 @@ def get(typing_context: Any, pointer: Any, index: Any) -> Any:
     return pointer.dtype(pointer, types.int64), generate
 
 
-@intrinsic
+@_operation
 def put(typing_context: Any, pointer: Any, index: Any, value: Any) -> Any:
     """Set ``pointer[index]``."""
 
@@ -152,7 +158,7 @@ def put(typing_context: Any, pointer: Any, index: Any, value: Any) -> Any:
     return types.void(pointer, types.int64, pointer.dtype), generate
 
 
-@intrinsic
+@_operation
 def lowest_bit(typing_context: Any, bits: Any) -> Any:
     """Return the number of the lowest bit set, 64 if none is."""
 
@@ -162,7 +168,7 @@ def lowest_bit(typing_context: Any, bits: Any) -> Any:
     return types.int64(types.int64), generate
 
 
-@intrinsic
+@_operation
 def near_mask(
     typing_context: Any, xs: Any, ys: Any, j: Any, x: Any, y: Any, least: Any, limit: Any
 ) -> Any:
@@ -182,7 +188,7 @@ def near_mask(
     return types.int64(xs, ys, types.int64, real, real, real, real), generate
 
 
-@intrinsic
+@_operation
 def out_mask(typing_context: Any, us: Any, vs: Any, a: Any, b: Any, limit: Any) -> Any:
     """Return bits for the corners with ``a u + b v > limit``, lanes beyond the cell included."""
 
@@ -201,7 +207,7 @@ def out_mask(typing_context: Any, us: Any, vs: Any, a: Any, b: Any, limit: Any) 
     return types.int64(us, vs, real, real, real), generate
 
 
-@intrinsic
+@_operation
 def roll(typing_context: Any, row: Any, first: Any, kept: Any, p: Any, q: Any) -> Any:
     """Keep `kept` entries of a cell buffer from `first` on and put p and q behind them."""
 
@@ -224,7 +230,7 @@ def roll(typing_context: Any, row: Any, first: Any, kept: Any, p: Any, q: Any) -
     return types.void(row, types.int64, types.int64, row.dtype, row.dtype), generate
 
 
-@intrinsic
+@_operation
 def reach2_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     """Return the largest squared distance of the m corners from the dot."""
 
@@ -243,7 +249,7 @@ def reach2_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     return types.float64(us, vs, types.int64), generate
 
 
-@intrinsic
+@_operation
 def moments_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     """Return twice the area and six times both first moments of the m corners' polygon."""
 
@@ -269,7 +275,7 @@ def moments_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     return types.UniTuple(types.float64, 3)(us, vs, types.int64), generate
 
 
-@intrinsic
+@_operation
 def store_lanes(typing_context: Any, numbers: Any, table: Any, i: Any) -> Any:
     """Copy a cell buffer's first `LANES` numbers to row i of a table `LANES` wide."""
 
@@ -299,7 +305,7 @@ def _gather(builder: Any, base: Any, index: Any, mask: Any) -> Any:
     return builder.call(function, [builder.inttoptr(addresses, pointers), _I4(8), mask, zeros])
 
 
-@intrinsic
+@_operation
 def corners_of_star(
     typing_context: Any,
     xs: Any,
@@ -355,7 +361,7 @@ def corners_of_star(
     return types.int64(xs, ys, star, row, row, real, real, U, V), generate
 
 
-@intrinsic
+@_operation
 def outside_box(typing_context: Any, U: Any, V: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Any:
     """Return bits for the corners outside a box, lanes beyond the cell included."""
 

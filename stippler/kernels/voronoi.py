@@ -110,7 +110,7 @@ def _cut_lanes(
     roll(U, q, kept, u + t * (get(U, p) - u), du + r * (get(U, q - 1) - du))
     roll(V, q, kept, v + t * (get(V, p) - v), dv + r * (get(V, q - 1) - dv))
     roll(N, q, kept, np.int32(number), last)
-    return kept + 2
+    return int(kept + 2)
 
 
 @inline

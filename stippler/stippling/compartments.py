@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import shapely
@@ -13,7 +14,7 @@ from shapely.geometry.polygon import orient
 
 from stippler.errors import GeometryError
 
-Shape = Polygon | MultiPolygon | NDArray[np.float64]
+Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
 
 RECTANGLE, POLYGON = 0, 1
 

@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -325,7 +326,9 @@ def _checked_points(points: ArrayLike) -> NDArray[np.float64]:
     return np.ascontiguousarray(xy)
 
 
-def _checked(values, n, dtype, name, default):
+def _checked(
+    values: ArrayLike | None, n: int, dtype: type[np.generic], name: str, default: float
+) -> NDArray[Any]:
     if values is None:
         return np.full(n, default, dtype)
     array = np.array(values, dtype=dtype)

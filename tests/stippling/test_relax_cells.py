@@ -212,7 +212,7 @@ def test_a_cell_of_a_thousand_corners():
 @given(seed=st.integers(0, 10**6), n_parts=st.integers(2, 9), n=st.integers(1, 25))
 def test_dots_see_only_their_own_compartment(seed, n_parts, n):
     parts = [
-        shapely.transform(star_polygon(seed + i, 12), lambda xy, i=i: xy + [1.5 * i, 0])
+        shapely.transform(star_polygon(seed + i, 12), lambda xy, i=i: xy + np.array([1.5 * i, 0]))
         for i in range(n_parts)
     ]  # they overlap: only the membership given tells the dots apart
     sets = [points_in(p, n, seed + i) for i, p in enumerate(parts)]

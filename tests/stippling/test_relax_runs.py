@@ -328,7 +328,7 @@ def test_bad_dots():
         Relaxation([[0.5, 0.5], [2, 0.5]], square)
     with pytest.raises(GeometryError, match="compartment 1: dot 0"):
         Relaxation([[0.5, 0.5], [5.5, 5.5]], [square, box(5, 5, 6, 6)], compartment_of_dot=[1, 1])
-    with pytest.raises(GeometryError, match="dot 0.*not finite"):
+    with pytest.raises(GeometryError, match=r"dot 0.*not finite"):
         Relaxation([[np.nan, 0.5]], square)
     with pytest.raises(GeometryError, match="holds no dots"):
         Relaxation(np.empty((0, 2)), square)

@@ -1,0 +1,134 @@
+"""Few small pictures, looked at once and kept: pens, zoom levels, both polarities.
+
+The measure is the largest difference between 16-pixel tiles, so that one missing dot fails; a test
+below proves it. To make new pictures, to be looked at and kept:
+``STIPPLER_KEEP_GOLDEN=1 pytest tests/golden``.
+What fails leaves result, reference and difference in tests/failed/.
+"""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from stippler import headless
+from stippler.camera import Camera
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Page
+from stippler.drawing.pens import PENS
+from stippler.render.renderer import Renderer
+from stippler.render.state import release_target
+
+HERE = Path(__file__).parent
+FAILED = HERE.parent / "failed"
+SIZE = (128, 96)
+PAGE = Page(16, 12)
+TILE = 16
+BOUND = 0.004  # of a tile in full black; drivers differ by less
+BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+ZOOMS = {"tiny": 1.5, "small": 4.0, "large": 40.0, "huge": 160.0}
+
+
+@pytest.fixture(scope="module")
+def picture():
+    """Return a function that draws dots as (h, w) uint8."""
+    ctx = headless.open_context()
+    renderer = Renderer(ctx)
+    renderer.set_page(PAGE.width_mm, PAGE.height_mm)
+    target = ctx.framebuffer([ctx.renderbuffer(SIZE, 1)])
+
+    def drawn(dots: Dots, scale: float = 8.0, paper=WHITE, ink=BLACK) -> np.ndarray:
+        renderer.set_dots(dots)
+        camera = Camera((8.0, 6.0), scale)
+        renderer.draw(camera, SIZE, target, paper=paper, desk=paper, ink=ink)
+        data = np.frombuffer(target.read(components=1, alignment=1), np.uint8)
+        return data.reshape(SIZE[::-1])[::-1]
+
+    yield drawn
+    release_target(ctx, target)
+    renderer.release()
+    ctx.release()
+
+
+def dots_of(pen_name: str) -> Dots:
+    rng = np.random.default_rng(21)
+    grid = np.stack(np.meshgrid(np.arange(14), np.arange(10)), -1).reshape(-1, 2)
+    position = (grid + 0.5 + rng.uniform(-0.25, 0.25, grid.shape)) * (16 / 14, 12 / 10)
+    dots = Dots.round(position, rng.uniform(0.2, 0.45, len(grid)))
+    shapes = next(pen for pen in PENS if pen.name == pen_name).shapes(dots)
+    dots.elongation, dots.angle_rad = shapes.elongation, shapes.angle_rad
+    dots.roughness = shapes.roughness
+    return dots
+
+
+def difference(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the largest of the tiles' mean absolute differences, 0 to 1."""
+    away = np.abs(a.astype(float) - b) / 255
+    h, w = (side // TILE for side in away.shape)
+    return float(away.reshape(h, TILE, w, TILE).mean(axis=(1, 3)).max())
+
+
+def compare(name: str, seen: np.ndarray) -> None:
+    path = HERE / f"{name}.png"
+    if os.environ.get("STIPPLER_KEEP_GOLDEN"):
+        Image.fromarray(seen).save(path, optimize=True)
+    with Image.open(path) as image:
+        kept = np.asarray(image)
+    away = difference(seen, kept)
+    if away > BOUND:
+        FAILED.mkdir(exist_ok=True)
+        apart = np.abs(seen.astype(int) - kept).astype(np.uint8)
+        for what, pixels in (("result", seen), ("reference", kept), ("difference", apart)):
+            Image.fromarray(pixels).save(FAILED / f"{name}-{what}.png")
+    assert away <= BOUND, f"{name}: {away:.4f}; look at {FAILED}"
+
+
+@pytest.mark.parametrize("pen", [pen.name for pen in PENS])
+def test_pens(picture, pen):
+    compare(f"pen-{pen.replace(' ', '-')}", picture(dots_of(pen)))
+
+
+@pytest.mark.parametrize("zoom", ZOOMS)
+def test_zoom_levels(picture, zoom):
+    compare(f"zoom-{zoom}", picture(dots_of("stick"), ZOOMS[zoom]))
+
+
+def test_white_on_black(picture):
+    seen = picture(dots_of("quill"), paper=BLACK, ink=WHITE)
+    compare("polarity-white-on-black", seen)
+
+
+@pytest.mark.parametrize("pen", [pen.name for pen in PENS])
+def test_any_missing_dot_fails(picture, pen):
+    """Each dot in turn is left out: none goes unnoticed."""
+    dots = dots_of(pen)
+    whole = picture(dots)
+    for k in range(len(dots)):
+        fewer = dots.take(np.arange(len(dots)) != k)
+        assert difference(picture(fewer), whole) > 2 * BOUND, k
+
+
+def test_a_dot_moved_by_a_pixel_fails(picture):
+    dots = dots_of("technical pen")
+    whole = picture(dots)
+    dots.position_mm[70, 0] += 1 / 8
+    assert difference(picture(dots), whole) > BOUND
+
+
+def test_a_failure_leaves_pictures_to_look_at(picture, monkeypatch, tmp_path):
+    monkeypatch.setattr("pathlib.Path.mkdir", lambda self, **k: None)
+    monkeypatch.setitem(compare.__globals__, "FAILED", tmp_path)
+    monkeypatch.delenv("STIPPLER_KEEP_GOLDEN", raising=False)
+    dots = dots_of("quill").take(slice(5, None))
+    with pytest.raises(AssertionError, match="pen-quill"):
+        compare("pen-quill", picture(dots))
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == [f"pen-quill-{w}.png" for w in ("difference", "reference", "result")]
+
+
+def test_nothing_kept_is_unused():
+    used = {f"pen-{pen.name.replace(' ', '-')}" for pen in PENS}
+    used |= {f"zoom-{zoom}" for zoom in ZOOMS} | {"polarity-white-on-black"}
+    assert {path.stem for path in HERE.glob("*.png")} == used
