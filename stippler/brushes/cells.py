@@ -16,6 +16,7 @@ from stippler.stippling.density import DensityField
 from stippler.stippling.relax_local import LocalRelaxation
 
 Floats = NDArray[np.float64]
+Box = tuple[float, float, float, float]
 
 MARGIN_SPACINGS = 4.0
 """How far around the dots their neighbours are taken in, in mean spacings."""
@@ -49,21 +50,40 @@ def _engines(
     around = _box_around(editing, editing.dots.position_mm[rows])
     near = editing.in_box(around)
     near_area = editing.dots.area[near]
-    for k in np.unique(editing.dots.area[rows]):
-        polygon = shapely.clip_by_rect(editing.drawing.areas[int(k)].outline_mm, *around)
-        if polygon.is_empty or polygon.geom_type not in ("Polygon", "MultiPolygon"):
-            continue
-        own = near[near_area == k]
-        xy = editing.dots.position_mm[own]
-        own = own[shapely.intersects_xy(polygon, xy[:, 0], xy[:, 1])]
-        mine = np.flatnonzero(np.isin(own, rows, assume_unique=True))
-        if len(mine):
+    for k in np.flatnonzero(np.bincount(editing.dots.area[rows])):
+        own = near if len(editing.drawing.areas) == 1 else near[near_area == k]
+        polygon = _part_of_area(editing, int(k), around)
+        if not isinstance(polygon, tuple):
+            xy = editing.dots.position_mm[own]
+            own = own[shapely.intersects_xy(polygon, xy[:, 0], xy[:, 1])]
+        at = np.searchsorted(own, rows)
+        found = own[np.minimum(at, len(own) - 1)] == rows if len(own) else at < 0
+        if found.any():
+            outline = shapely.box(*polygon) if isinstance(polygon, tuple) else polygon
             density = _density(reference, around)
-            engine = LocalRelaxation(editing.dots.position_mm[own], polygon, density=density)
-            yield engine, mine, np.searchsorted(rows, own[mine])
+            engine = LocalRelaxation(editing.dots.position_mm[own], outline, density=density)
+            yield engine, at[found], np.flatnonzero(found)
 
 
-def _box_around(editing: Editing, position_mm: Floats) -> tuple[float, float, float, float]:
+def _part_of_area(
+    editing: Editing, k: int, around: Box
+) -> Box | shapely.Polygon | shapely.MultiPolygon:
+    """Return the part of an area in a box: a box again where the area is one."""
+    box = editing.bounds.box_of(k)
+    if box is not None:
+        return (
+            max(box[0], around[0]),
+            max(box[1], around[1]),
+            min(box[2], around[2]),
+            min(box[3], around[3]),
+        )
+    part = shapely.clip_by_rect(editing.drawing.areas[k].outline_mm, *around)
+    if part.geom_type == "GeometryCollection":  # a corner or an edge that only touches the box
+        part = shapely.MultiPolygon([p for p in part.geoms if p.geom_type == "Polygon"])
+    return part
+
+
+def _box_around(editing: Editing, position_mm: Floats) -> Box:
     (x0, y0), (x1, y1) = position_mm.min(axis=0), position_mm.max(axis=0)
     page = editing.drawing.page
     whole = math.sqrt(page.width_mm * page.height_mm / len(editing.dots))
@@ -73,9 +93,7 @@ def _box_around(editing: Editing, position_mm: Floats) -> tuple[float, float, fl
     return float(x0 - margin), float(y0 - margin), float(x1 + margin), float(y1 + margin)
 
 
-def _density(
-    reference: Reference | None, box: tuple[float, float, float, float]
-) -> DensityField | None:
+def _density(reference: Reference | None, box: Box) -> DensityField | None:
     """Cut the weight out of the reference: its square, since dots settle at the weight's root."""
     if reference is None:
         return None

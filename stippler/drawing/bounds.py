@@ -31,6 +31,10 @@ class Bounds:
             for outline in self._outlines
         ]
 
+    def box_of(self, k: int) -> tuple[float, float, float, float] | None:
+        """Return the box x0, y0, x1, y1 that an area is; None where it is something else."""
+        return self._boxes[k]
+
     def area_at(self, points: Points) -> NDArray[np.int32]:
         """Return the area of each point; `NOWHERE` off the page."""
         found = np.full(len(points), NOWHERE, np.int32)

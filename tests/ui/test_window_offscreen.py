@@ -286,8 +286,8 @@ def test_a_second_picture_supersedes_the_first(desk, picture: Path, tmp_path: Pa
 def test_it_sleeps_when_nothing_changes(desk, picture: Path) -> None:
     open_and_finish(desk, picture)
     desk.app.session.messages.dismiss()
-    for _ in range(5):
-        desk.app.step(0.6)  # the tooltip's last look
+    # the tooltip's last look, and the one at the end of the line that is dismissed
+    desk.host.until(lambda: desk.app.editor.sleep_s() > 5.0, "sleep")
     frames = desk.app.editor.n_frames
     assert desk.app.editor.sleep_s() > 5.0
     desk.app.step(0.0)
