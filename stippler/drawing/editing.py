@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,22 @@ from stippler.drawing.store import DotStore, Rows, union
 from stippler.kernels.merging import merge_positions
 
 _MOST_PARTS = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Changed:
+    """What is to be shown anew.
+
+    Attributes
+    ----------
+    rows : array or None
+        Of dots that a person has changed; None is all.
+    places : bool
+        Whether a result has moved dots all over the drawing, besides.
+    """
+
+    rows: Rows | None
+    places: bool
 
 
 class Editing:
@@ -51,7 +69,7 @@ class Editing:
         self._stroke: Recorder | None = None
         self._run: Run | None = None
         self._changed: list[Rows] = []
-        self._all_changed = True
+        self._all_changed, self._places_changed = True, False
         drawing.dots = self._store.dots
 
     @property
@@ -213,7 +231,9 @@ class Editing:
             run.after,
             rows,
         )
-        self._note(rows[:n], None, moved=True)
+        self.revision += 1
+        self._index.update(rows[:n], self.dots.position_mm)
+        self._places_changed = True
         return n
 
     def end_run(self) -> None:
@@ -224,14 +244,14 @@ class Editing:
 
     # --- what has changed -------------------------------------------------------------------
 
-    def take_changed(self) -> Rows | None:
-        """Return the rows that have changed since the last call; None is all of them."""
-        parts, everything = self._changed, self._all_changed
-        self._changed, self._all_changed = [], False
+    def take_changed(self) -> Changed:
+        """Return what has changed since the last call."""
+        parts, everything, places = self._changed, self._all_changed, self._places_changed
+        self._changed, self._all_changed, self._places_changed = [], False, False
         if everything:
-            return None
+            return Changed(None, places)
         n = len(self.dots)
-        return union([rows[rows < n] for rows in parts], n)
+        return Changed(union([rows[rows < n] for rows in parts], n), places)
 
     def _apply(self, edit: Edit) -> None:
         rows = self._store.apply(edit)
@@ -241,15 +261,14 @@ class Editing:
         places = bool("position_mm" in edit.changes or len(edit.removed) or len(edit.inserted))
         self._note(rows, np.concatenate(ids), moved=places)
 
-    def _note(self, rows: Rows, ids: NDArray[np.int64] | None, *, moved: bool) -> None:
+    def _note(self, rows: Rows, ids: NDArray[np.int64], *, moved: bool) -> None:
         """Take note of changed rows, and of the ids of the dots that a person changed."""
         self.revision += 1
-        if ids is not None:
-            if self._store.next_id > len(self._edited):
-                more = np.zeros(self._store.next_id + self._store.next_id // 4 + 1024, np.int32)
-                more[: len(self._edited)] = self._edited
-                self._edited = more
-            self._edited[ids] = self.revision
+        if self._store.next_id > len(self._edited):
+            more = np.zeros(self._store.next_id + self._store.next_id // 4 + 1024, np.int32)
+            more[: len(self._edited)] = self._edited
+            self._edited = more
+        self._edited[ids] = self.revision
         if moved:
             self._index.update(rows, self.dots.position_mm)
         if self._all_changed:

@@ -108,14 +108,18 @@ class Canvas:
 
     def _upload_edited(self, renderer: Renderer, editing: Editing, selection: Chosen) -> None:
         changed, selected = editing.take_changed(), selection.mask(editing)
-        if editing is not self._edited or changed is None:
-            renderer.set_dots(editing.dots, selected)
+        dots, rows = editing.dots, changed.rows
+        if editing is not self._edited or rows is None or renderer.n_dots == 0:
+            renderer.set_dots(dots, selected)
         else:
             if selection.ids is not self._selected:
                 for ids in (self._selected, selection.ids):
-                    rows = editing.rows(ids)
-                    changed = np.union1d(changed, rows[rows >= 0])
-            renderer.update_dots(editing.dots, changed, selected)
+                    there = editing.rows(ids)
+                    rows = np.union1d(rows, there[there >= 0])
+            if len(rows) or len(dots) != renderer.n_dots:
+                renderer.update_dots(dots, rows, selected)
+            if changed.places:
+                renderer.set_positions(dots.position_mm, dots.radius_mm)
         self._selected = selection.ids
 
     def _sized(self, size_px: Size) -> moderngl.Texture:

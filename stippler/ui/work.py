@@ -86,9 +86,8 @@ def stipple_picture(
     from stippler.stippling.stipple import stages
 
     for progress in stages(reference, plan):
-        if progress.stage == "done":
-            rehearse()
         yield Work(progress.stage, progress.done, progress.total, reference, progress)
+    rehearse()
 
 
 def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:

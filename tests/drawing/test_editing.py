@@ -171,8 +171,10 @@ class EditingMachine(RuleBasedStateMachine):
     @invariant()
     def changes_are_told(self):
         """What the GPU was told adds up to what there is."""
-        rows = self.editing.take_changed()
-        dots = self.editing.dots
+        changed = self.editing.take_changed()
+        rows, dots = changed.rows, self.editing.dots
+        if changed.places and "id" in self.shown and len(dots) == len(self.shown["id"]):
+            self.shown["position_mm"] = dots.position_mm.copy()
         if rows is None or len(dots) != len(self.shown.get("id", ())):
             self.shown = {name: getattr(dots, name).copy() for name in NAMES}
             return
