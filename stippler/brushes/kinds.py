@@ -11,7 +11,13 @@ Value = float | str | bool
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One value of a brush; a choice where it has options, a yes or no where it is a bool."""
+    """One value of a brush; a choice where it has options, a yes or no where it is a bool.
+
+    Attributes
+    ----------
+    only : (str, tuple of str) or None
+        Counts only while another parameter has one of these values.
+    """
 
     name: str
     label: str
@@ -21,6 +27,7 @@ class Parameter:
     high: float = 1.0
     unit: str = ""
     options: tuple[str, ...] = ()
+    only: tuple[str, tuple[str, ...]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +141,19 @@ KINDS: tuple[Kind, ...] = (
                 "By a percentage at each stamp, towards a value, or towards the picture's tone.",
                 options=("enlarge", "reduce", "set", "tone"),
             ),
-            Parameter("amount", "Amount", 5.0, "Change at each stamp, in percent.", 0.5, 100, "%"),
-            Parameter("dot_mm", "Dot radius", 0.25, "For 'set', in mm.", 0.02, 2.0, "mm"),
+            Parameter(
+                "amount",
+                "Amount",
+                5.0,
+                "Change at each stamp, in percent.",
+                0.5,
+                100,
+                "%",
+                only=("how", ("enlarge", "reduce", "tone")),
+            ),
+            Parameter(
+                "dot_mm", "Dot radius", 0.25, "In mm.", 0.02, 2.0, "mm", only=("how", ("set",))
+            ),
         ),
     ),
     Kind(
@@ -160,8 +178,18 @@ KINDS: tuple[Kind, ...] = (
                 "Direction of the stretch: the stroke's own, a set angle, the edges of the "
                 "picture, or each dot's own at random.",
                 options=("stroke", "angle", "edge", "random"),
+                only=("how", ("stretch",)),
             ),
-            Parameter("angle", "Angle", 0.0, "For 'angle', clockwise from the right.", 0, 180, "°"),
+            Parameter(
+                "angle",
+                "Angle",
+                0.0,
+                "Clockwise from the right, in degrees.",
+                0,
+                180,
+                "°",
+                only=("along", ("angle",)),
+            ),
         ),
     ),
     Kind("drag", "Drag a dot", "g", "drag", "Moves the dot nearest to where you press."),

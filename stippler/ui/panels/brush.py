@@ -41,8 +41,9 @@ def draw_brush(widgets: Widgets, painting: Painting, commands: Commands) -> None
         _draw_radius(widgets, brush, changes)
     values = dict(brush.values)
     for parameter in brush.about.parameters:
-        values[parameter.name] = _draw_parameter(widgets, brush, parameter)
-    if values != {**{p.name: p.default for p in brush.about.parameters}, **brush.values}:
+        if parameter.only is None or brush.value(parameter.only[0]) in parameter.only[1]:
+            values[parameter.name] = _draw_parameter(widgets, brush, parameter)
+    if any(brush.value(name) != value for name, value in values.items()):
         changes["values"] = values
     if brush.about.rhythm in ("arc", "time"):
         widgets.rule()
