@@ -15,7 +15,7 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import ParameterError
 from stippler.stippling.plan import Plan
-from stippler.stippling.stipple import Progress, stages
+from stippler.stippling.stipple import Progress, notes_on, stages
 
 Tone = Literal["linear", "perceptual"]
 DEFAULT_WIDTH_MM = 148.0  # A5
@@ -114,20 +114,6 @@ def draw(
     return Drawing.from_reference(
         reference, last.position_mm, last.radius_mm, _style(last.radius_mm, plan)
     ), notes_on(last)
-
-
-def notes_on(result: Progress) -> tuple[str, ...]:
-    """Say in words what a finished run fell short of."""
-    lack = result.shortfall
-    if lack is None:
-        return ()
-    notes = list(lack.notes)
-    if lack.share > 0.0005:
-        notes.append(
-            f"{100 * lack.share:.1f} % of the page is too dark for these dots "
-            f"(by {lack.missing:.2f} of 1); allow larger dots, or more of them"
-        )
-    return tuple(notes)
 
 
 def pulse_density(

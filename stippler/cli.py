@@ -210,7 +210,9 @@ def main() -> None:
     except StipplerError as error:
         status = _fail(str(error), 1)
     except (KeyboardInterrupt, typer.Abort):
-        status = _fail("stopped; nothing was written", _INTERRUPTED)
+        status = _fail(
+            "stopped; nothing was written" if args[0] == "render" else "stopped", _INTERRUPTED
+        )
     except MemoryError:
         status = _fail("not enough memory; ask for fewer dots or a smaller picture", 1)
     except BrokenPipeError:

@@ -21,6 +21,7 @@ MAX_DECIMALS = 6
 _ROUGH = 1e-3  # less is drawn smooth
 SEGMENTS = ((_ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
 _BLOCK = 8192
+_PATH_BLOCK = 2048  # their text is made in room that stays in the cache
 
 
 def write(drawing: Drawing, stream: IO[bytes], *, decimals: int = DECIMALS) -> None:
@@ -81,15 +82,15 @@ def _elements(dots: Dots, rows: NDArray[np.intp], decimals: int) -> Iterator[byt
     roughness = dots.roughness[rows]
     smooth = roughness <= _ROUGH
     is_round = smooth & (dots.elongation[rows] == 1)
-    for some in _blocks(rows[is_round]):
+    for some in _blocks(rows[is_round], _BLOCK):
         yield svg_text.circles(dots.position_mm[some], dots.radius_mm[some], decimals)
-    for some in _blocks(rows[smooth & ~is_round]):
+    for some in _blocks(rows[smooth & ~is_round], _PATH_BLOCK):
         yield svg_text.paths(dots.take(some), SEGMENTS[0][1], decimals)
     for (above, _), (limit, n_segments) in pairwise(SEGMENTS):
-        for some in _blocks(rows[(roughness > above) & (roughness <= limit)]):
+        for some in _blocks(rows[(roughness > above) & (roughness <= limit)], _PATH_BLOCK):
             yield svg_text.paths(dots.take(some), n_segments, decimals)
 
 
-def _blocks(rows: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
-    for start in range(0, len(rows), _BLOCK):
-        yield rows[start : start + _BLOCK]
+def _blocks(rows: NDArray[np.intp], size: int) -> Iterator[NDArray[np.intp]]:
+    for start in range(0, len(rows), size):
+        yield rows[start : start + size]

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import inline, kernel
+from stippler.kernels.jit import inline, inner
 
 F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
@@ -36,7 +36,7 @@ def _rim_position(cell: F8, m: int, k: int, u: float, v: float) -> float:
     return float(k + min(max(t, 0.0), 1.0))
 
 
-@kernel
+@inner
 def _clip_edge(
     cell: F8, m: int, au: float, av: float, bu: float, bv: float
 ) -> tuple[float, float, int, int]:
@@ -103,7 +103,7 @@ def _put_rim(cell: F8, m: int, begin: float, end: float, out: F8, n: int) -> int
     return n
 
 
-@kernel
+@inner
 def _hides(cell: F8, m: int, chain: F8, trace: F8, u: float, v: float, near2: float) -> bool:
     """Whether the chain hides the point from the piece's side: whether it lies on its right.
 
@@ -133,7 +133,7 @@ def _hides(cell: F8, m: int, chain: F8, trace: F8, u: float, v: float, near2: fl
     return wind != 0
 
 
-@kernel
+@inner
 def _trace_chain(
     cell: F8,
     m: int,
@@ -177,7 +177,7 @@ def _trace_chain(
     return n
 
 
-@kernel
+@inner
 def _drop_hidden(cell: F8, m: int, chains: F8, n_chains: int, trace: F8, near2: float) -> int:
     """Keep the chains that bound the dot's piece, sorted by where they enter; return how many."""
     kept = 0
@@ -225,7 +225,7 @@ def _put_chains_and_rim(
 
     Border segments come first: they are what a moving dot must not cross.
     """
-    n = 0
+    n = np.int64(0)
     for i in range(n_chains):
         for s in range(int(chains[i, _FIRST]), int(chains[i, _END])):
             n = _put(out, n, trace[s, 0], trace[s, 1], trace[s, 2], trace[s, 3])
@@ -251,7 +251,7 @@ def _put_chains_and_rim(
     return n_border, n
 
 
-@kernel
+@inner
 def _put_loops(
     cell: F8,
     m: int,
@@ -293,7 +293,7 @@ def _put_loops(
     return n, is_ringed
 
 
-@kernel
+@inner
 def outline_piece(
     cell: F8,
     m: int,
@@ -330,7 +330,7 @@ def outline_piece(
     n_border, n : int
         ``out[:n_border]`` lies on the border, the rest up to n on the cell's rim.
     """
-    n_chains = n_trace = 0
+    n_chains = n_trace = np.int64(0)
     n_started_inside = 0
     for i in range(n_near):
         e = near[i]

@@ -68,60 +68,64 @@ def fill_coefficients(seed, roughness, c):
 
 
 @kernel
-def _trace(start, stop, center, radius, elongation, angle, rough, seed, waves, out):
-    """Trace outlines; `waves` (m, 3 + 4 N_HARMONICS) is made by `wave_table`."""
+def _trace(start, stop, center, radius, elongation, angle, rough, seed, waves, slopes, bend, out):
+    """Trace outlines; with a bend also the Bezier controls after and before each point.
+
+    `waves` (2 N_HARMONICS, m) holds cos and sin of k phi, `slopes` their derivatives.
+    """
     c = np.empty(2 * N_HARMONICS)
+    m = waves.shape[1]
+    each = out.shape[1] // m
+    n, slope = np.empty(m), np.empty(m)
     for i in range(start, stop):
         fill_coefficients(seed[i], rough[i], c)
+        n[:] = 1.0
+        slope[:] = 0.0
+        if rough[i] > 0.0:
+            for k in range(2 * N_HARMONICS):
+                for j in range(m):
+                    n[j] += c[k] * waves[k, j]
+                    slope[j] += c[k] * slopes[k, j]
         wide = radius[i] * math.sqrt(elongation[i])
         ux, uy = wide * math.cos(angle[i]), wide * math.sin(angle[i])
         vx, vy = -uy / elongation[i], ux / elongation[i]
-        for j in range(waves.shape[0]):
-            n = 1.0
-            slope = 0.0
-            for m in range(2 * N_HARMONICS):
-                n += c[m] * waves[j, 3 + m]
-                slope += c[m] * waves[j, 3 + 2 * N_HARMONICS + m]
-            r = math.sqrt(n)
-            bend = waves[j, 2]
-            s = bend * slope / (2.0 * r)
-            x = r * waves[j, 0] + s * waves[j, 0] - bend * r * waves[j, 1]
-            y = r * waves[j, 1] + s * waves[j, 1] + bend * r * waves[j, 0]
-            out[i, j, 0] = center[i, 0] + x * ux + y * vx
-            out[i, j, 1] = center[i, 1] + x * uy + y * vy
+        for j in range(m):
+            r = math.sqrt(n[j])
+            cos, sin = slopes[2 * N_HARMONICS, j], slopes[2 * N_HARMONICS + 1, j]
+            px, py = r * cos, r * sin
+            x = center[i, 0] + px * ux + py * vx
+            y = center[i, 1] + px * uy + py * vy
+            out[i, each * j, 0], out[i, each * j, 1] = x, y
+            if each == 3:
+                s = slope[j] / (2.0 * r)
+                tx, ty = bend * (s * cos - py), bend * (s * sin + px)
+                dx, dy = tx * ux + ty * vx, tx * uy + ty * vy
+                before = 3 * j - 1 if j > 0 else 3 * m - 1
+                out[i, 3 * j + 1, 0], out[i, 3 * j + 1, 1] = x + dx, y + dy
+                out[i, before, 0], out[i, before, 1] = x - dx, y - dy
 
 
 @cache
-def wave_table(n_segments: int, handles: bool) -> NDArray[np.float64]:
-    """Return what `_trace` multiplies coefficients with: rows of points, or of Bezier controls.
-
-    A row holds cos phi, sin phi, how far along the tangent the point lies (0 for a point of the
-    outline), then the harmonics and their derivatives. With handles there are three rows a
-    segment: a point, the control after it and the control before the next point.
-    """
-    step = 2.0 * math.pi / n_segments
-    bend = 4.0 / 3.0 * math.tan(step / 4.0)
-    corner = np.arange(n_segments) * step
-    if handles:
-        phi = np.stack([corner, corner, corner + step], axis=1).ravel()
-        bends = np.tile([0.0, bend, -bend], n_segments)
-    else:
-        phi, bends = corner, np.zeros(n_segments)
-    k = np.arange(2, 2 + N_HARMONICS)
-    c, s = np.cos(np.outer(phi, k)), np.sin(np.outer(phi, k))
-    waves = np.stack([c, s], axis=2).reshape(len(phi), -1)
-    slopes = np.stack([-k * s, k * c], axis=2).reshape(len(phi), -1)
-    table = np.column_stack([np.cos(phi), np.sin(phi), bends, waves, slopes])
-    table.flags.writeable = False
-    return table
+def wave_tables(n_points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return what `_trace` multiplies coefficients with; cos and sin of phi end the second."""
+    phi = np.arange(n_points) * (2.0 * math.pi / n_points)
+    k = np.arange(2.0, 2.0 + N_HARMONICS)[:, None]
+    c, s = np.cos(k * phi), np.sin(k * phi)
+    waves = np.stack([c, s], axis=1).reshape(-1, n_points)
+    slopes = np.stack([-k * s, k * c], axis=1).reshape(-1, n_points)
+    slopes = np.vstack([slopes, np.cos(phi), np.sin(phi)])
+    for table in (waves, slopes):
+        table.flags.writeable = False
+    return waves, slopes
 
 
-def _traced(dots: ShapedDots, table: NDArray[np.float64]) -> NDArray[np.float64]:
+def _traced(dots: ShapedDots, n_points: int, *, handles: bool) -> NDArray[np.float64]:
     check_shapes(dots.elongation, dots.angle_rad, dots.roughness)
-    out = np.empty((len(dots.position_mm), len(table), 2))
+    out = np.empty((len(dots.position_mm), n_points * (3 if handles else 1), 2))
+    bend = 4.0 / 3.0 * math.tan(math.pi / (2.0 * n_points))
     run_ranges(
         _trace, len(out), dots.position_mm, dots.radius_mm, dots.elongation, dots.angle_rad,
-        dots.roughness, dots.seed, table, out, grain=_GRAIN,
+        dots.roughness, dots.seed, *wave_tables(n_points), bend, out, grain=_GRAIN,
     )  # fmt: skip
     return out
 
@@ -148,7 +152,7 @@ def outlines(dots: ShapedDots, n_points: int = 64) -> NDArray[np.float64]:
     """
     if n_points < 3:
         raise ParameterError(f"{n_points} points make no outline", "n_points", "give at least 3")
-    return _traced(dots, wave_table(n_points, False))
+    return _traced(dots, n_points, handles=False)
 
 
 def bezier_outlines(dots: ShapedDots, n_segments: int) -> NDArray[np.float64]:
@@ -171,7 +175,7 @@ def bezier_outlines(dots: ShapedDots, n_segments: int) -> NDArray[np.float64]:
     """
     if n_segments < 3:
         raise ParameterError(f"{n_segments} segments close no outline", "n_segments")
-    return _traced(dots, wave_table(n_segments, True))
+    return _traced(dots, n_segments, handles=True)
 
 
 def check_shapes(elongation: ArrayLike, angle_rad: ArrayLike, roughness: ArrayLike) -> None:

@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import kernel
+from stippler.kernels.jit import inner, kernel
 
 F8 = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ def sum_rows(start: int, stop: int, values: F8, mass: F8, moment: F8) -> None:
         mass[r, values.shape[1]], moment[r, values.shape[1]] = m, q
 
 
-@kernel
+@inner
 def integrate_edge(
     mass: F8, moment: F8, x: float, y: float, ax: float, ay: float, bx: float, by: float
 ) -> tuple[float, float, float]:
@@ -47,6 +47,7 @@ def integrate_edge(
     r = math.floor(y + ay) if up > 0 else math.ceil(y + ay) - 1
     r_last = math.ceil(y + by) - 1 if up > 0 else math.floor(y + by)
     slope = (bx - ax) / (by - ay)
+    rise = (by - ay) / (bx - ax) if bx != ax else 0.0
     right = 1 if bx > ax else -1
     ua, va = ax, ay
     while True:
@@ -60,7 +61,7 @@ def integrate_edge(
             while True:
                 in_last = c == c_last or (c - c_last) * right > 0
                 ub = u_end if in_last else (c + (right > 0)) - x
-                vb = v_end if in_last else va + (v_end - va) * ((ub - ua) / (u_end - ua))
+                vb = v_end if in_last else va + (ub - ua) * rise
                 left = min(max(c, 0), w)
                 g = mass[r, left] - m0
                 q = moment[r, left] - q0 - x * g

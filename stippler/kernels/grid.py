@@ -7,6 +7,8 @@ with kind 0 for a rectangle, whose box is its exact border, and 1 for a polygon.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -131,3 +133,68 @@ def measure_clearance(grid_int: I4, cell_start: I4, clear: I4) -> None:
                             if 0 <= i + s < nx:
                                 best = min(best, clear[k + back * nx + s] + 1)
                     clear[k] = best
+
+
+@inline
+def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
+    """Return row and first and last column of the s-th run of grid cells of a ring.
+
+    Ring 1 includes the dot's own cell. A run off the grid has its last column before its first.
+    """
+    if ring == 1:
+        row = iy if s == 0 else iy - 1 if s == 1 else iy + 1
+        first, last = ix - 1, ix + 1
+    elif s < 2:
+        row = iy - ring if s == 0 else iy + ring
+        first, last = ix - ring, ix + ring
+    else:
+        row = iy - ring + 1 + ((s - 2) >> 1)
+        first = last = ix + ring if s & 1 else ix - ring
+    if row < 0 or row >= ny:
+        return 0, 0, -1
+    return row, max(first, 0), min(last, nx - 1)
+
+
+@inline
+def distance2_to_span(
+    x: float,
+    y: float,
+    row: int,
+    first: int,
+    last: int,
+    gx: float,
+    gy: float,
+    h: float,
+    slack: float,
+) -> float:
+    """Return the squared distance to the nearest place a dot of these grid cells can be."""
+    dx = max(max(gx + first * h - x, x - (gx + (last + 1) * h)) - slack, 0.0)
+    dy = max(max(gy + row * h - y, y - (gy + (row + 1) * h)) - slack, 0.0)
+    return (dx * dx + dy * dy) * (1.0 - 1e-9)
+
+
+@inline
+def seen_distance(
+    x: float,
+    y: float,
+    ring: int,
+    ix: int,
+    iy: int,
+    nx: int,
+    ny: int,
+    gx: float,
+    gy: float,
+    h: float,
+    slack: float,
+) -> float:
+    """Return the distance within which all dots of the compartment are in rings up to `ring`."""
+    best = math.inf
+    if ix - ring > 0:
+        best = min(best, x - (gx + (ix - ring) * h))
+    if ix + ring < nx - 1:
+        best = min(best, gx + (ix + ring + 1) * h - x)
+    if iy - ring > 0:
+        best = min(best, y - (gy + (iy - ring) * h))
+    if iy + ring < ny - 1:
+        best = min(best, gy + (iy + ring + 1) * h - y)
+    return max(best * (1.0 - 1e-9) - slack, 0.0)

@@ -40,3 +40,11 @@ def inline(function: Function) -> Function:
     """Compile a function that is inlined by LLVM into every kernel that calls it."""
     compiled: Function = numba.njit(forceinline=True, **_OPTIONS)(function)
     return compiled
+
+
+def inner(function: Function) -> Function:
+    """Compile a function that only kernels call, without the wrappers that Python would need."""
+    compiled: Function = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)(
+        function
+    )
+    return compiled

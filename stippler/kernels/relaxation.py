@@ -13,10 +13,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.clip import outline_piece
-from stippler.kernels.field import integrate_edge
-from stippler.kernels.grid import column_of
-from stippler.kernels.jit import inline, kernel
+from stippler.kernels.border import (
+    border_distance,
+    free_share,
+    gather_edges,
+    outline_of_cell,
+    outline_within,
+    sum_area,
+    sum_field,
+)
+from stippler.kernels.grid import column_of, distance2_to_span, ring_span, seen_distance
+from stippler.kernels.jit import inline, inner, kernel
 from stippler.kernels.simd import (
     BUFFER,
     get,
@@ -51,72 +58,7 @@ NEAR = 1.1
 """Squared distance, in grid cells, of the dots that cut first: fewer cuts are wasted."""
 
 
-@inline
-def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
-    """Return row and first and last column of the s-th run of grid cells of a ring.
-
-    Ring 1 includes the dot's own cell. A run off the grid has its last column before its first.
-    """
-    if ring == 1:
-        row = iy if s == 0 else iy - 1 if s == 1 else iy + 1
-        first, last = ix - 1, ix + 1
-    elif s < 2:
-        row = iy - ring if s == 0 else iy + ring
-        first, last = ix - ring, ix + ring
-    else:
-        row = iy - ring + 1 + ((s - 2) >> 1)
-        first = last = ix + ring if s & 1 else ix - ring
-    if row < 0 or row >= ny:
-        return 0, 0, -1
-    return row, max(first, 0), min(last, nx - 1)
-
-
-@inline
-def _distance2_to_span(
-    x: float,
-    y: float,
-    row: int,
-    first: int,
-    last: int,
-    gx: float,
-    gy: float,
-    h: float,
-    slack: float,
-) -> float:
-    """Return the squared distance to the nearest place a dot of these grid cells can be."""
-    dx = max(max(gx + first * h - x, x - (gx + (last + 1) * h)) - slack, 0.0)
-    dy = max(max(gy + row * h - y, y - (gy + (row + 1) * h)) - slack, 0.0)
-    return (dx * dx + dy * dy) * (1.0 - 1e-9)
-
-
-@inline
-def seen_distance(
-    x: float,
-    y: float,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    gx: float,
-    gy: float,
-    h: float,
-    slack: float,
-) -> float:
-    """Return the distance within which all dots of the compartment are in rings up to `ring`."""
-    best = math.inf
-    if ix - ring > 0:
-        best = min(best, x - (gx + (ix - ring) * h))
-    if ix + ring < nx - 1:
-        best = min(best, gx + (ix + ring + 1) * h - x)
-    if iy - ring > 0:
-        best = min(best, y - (gy + (iy - ring) * h))
-    if iy + ring < ny - 1:
-        best = min(best, gy + (iy + ring + 1) * h - y)
-    return max(best * (1.0 - 1e-9) - slack, 0.0)
-
-
-@kernel
+@inner
 def _cut_cell_by_ring(
     cell: F8,
     m: int,
@@ -144,186 +86,11 @@ def _cut_cell_by_ring(
             d2 = a * a + b * b
             if d2 >= 4.0 * reach2 or d2 == 0.0:
                 continue
-            m = cut_cell(cell, m, a, b, 0.5 * d2, j)
+            m = cut_cell(cell, m, a, b, 0.5 * d2, float(j))
             if m == OVERFLOW:
                 return m
             reach2 = reach2_of_cell(cell, m)
     return m
-
-
-@inline
-def _gather_edges(
-    edge_start: I4,
-    edge_of_slot: I4,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    first_cell: int,
-    near: I4,
-    seen: NDArray[np.int64],
-    stamp: int,
-) -> int:
-    """List the border edges in the grid cells up to `ring`, each once."""
-    n = 0
-    x0, x1 = max(ix - ring, 0), min(ix + ring, nx - 1)
-    for j in range(max(iy - ring, 0), min(iy + ring, ny - 1) + 1):
-        row = first_cell + j * nx
-        for s in range(edge_start[row + x0], edge_start[row + x1 + 1]):
-            e = edge_of_slot[s]
-            if seen[e] != stamp:
-                seen[e] = stamp
-                near[n] = e
-                n += 1
-    return n
-
-
-@inline
-def _border_distance(edges: F8, near: I4, n_near: int, x: float, y: float) -> float:
-    """Return the distance of (x, y) from the nearest of the edges listed."""
-    best = math.inf
-    for s in range(n_near):
-        e = near[s]
-        au, av = x - edges[e, 0], y - edges[e, 1]
-        eu, ev = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
-        t = min(max((au * eu + av * ev) / (eu * eu + ev * ev), 0.0), 1.0)
-        au -= t * eu
-        av -= t * ev
-        best = min(best, au * au + av * av)
-    return math.sqrt(best) * (1.0 - 1e-9)
-
-
-@kernel
-def _outline_within(
-    cell: F8,
-    cell2: F8,
-    m: int,
-    x: float,
-    y: float,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    gx: float,
-    gy: float,
-    h: float,
-    edges: F8,
-    next_edge: I4,
-    near: I4,
-    n_near: int,
-    seen: NDArray[np.int64],
-    stamp: int,
-    chains: F8,
-    trace: F8,
-    out: F8,
-) -> tuple[int, int, float]:
-    """Outline the dot's piece of the cell within the rings seen; return its reach, squared, too.
-
-    A piece that touches the outermost ring's walls reaches as far as they do, which tells the
-    caller to look further.
-    """
-    for r in range(6):
-        for k in range(m):
-            cell2[r, k] = cell[r, k]
-    n2 = m
-    if ix - ring > 0:
-        n2 = cut_cell(cell2, n2, -1.0, 0.0, x - (gx + (ix - ring) * h), -1.0)
-    if ix + ring < nx - 1:
-        n2 = cut_cell(cell2, n2, 1.0, 0.0, gx + (ix + ring + 1) * h - x, -1.0)
-    if iy - ring > 0:
-        n2 = cut_cell(cell2, n2, 0.0, -1.0, y - (gy + (iy - ring) * h), -1.0)
-    if iy + ring < ny - 1:
-        n2 = cut_cell(cell2, n2, 0.0, 1.0, gy + (iy + ring + 1) * h - y, -1.0)
-    reach2 = reach2_of_cell(cell2, n2)
-    n_border, n = outline_piece(
-        cell2,
-        n2,
-        x,
-        y,
-        edges,
-        next_edge,
-        near,
-        n_near,
-        stamp + 1,
-        seen,
-        chains,
-        trace,
-        out,
-        1e-24 * reach2,
-    )
-    best = 0.0
-    for s in range(n):
-        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
-        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
-    return n_border, n, best
-
-
-@inline
-def _outline_of_cell(cell: F8, m: int, out: F8) -> int:
-    for k in range(m):
-        n = k + 1 if k + 1 < m else 0
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
-    return m
-
-
-@inline
-def _sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
-    """Return area, both first moments and the second moment about the dot."""
-    area = mu = mv = second = 0.0
-    for s in range(n):
-        au, av, bu, bv = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
-        cross = au * bv - bu * av
-        area += cross
-        mu += cross * (au + bu)
-        mv += cross * (av + bv)
-        second += cross * (au * au + au * bu + bu * bu + av * av + av * bv + bv * bv)
-    return 0.5 * area, mu / 6.0, mv / 6.0, second / 12.0
-
-
-@kernel
-def sum_field(
-    out: F8, n: int, x: float, y: float, mass: F8, moment: F8, frame: F8
-) -> tuple[float, float, float]:
-    """Return the field's mass over the outline and its first moments about the dot."""
-    ku, kv = 1.0 / frame[2], 1.0 / frame[3]
-    px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
-    total = mu = mv = 0.0
-    for s in range(n):
-        m, mx, my = integrate_edge(
-            mass, moment, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
-        )
-        total += m
-        mu += mx
-        mv += my
-    size = frame[2] * frame[3]
-    return total * size, mu * size * frame[2], mv * size * frame[3]
-
-
-@inline
-def _free_share(out: F8, n_border: int, du: float, dv: float, margin: float) -> float:
-    """Return the share of the move (du, dv) that stays clear of the border segments.
-
-    1 if the straight way ends well inside; else half of the way to the first border met; 0 if
-    even that comes nearer to it than `margin`.
-    """
-    share = 1.0
-    for s in range(n_border):
-        au, av = out[s, 0], out[s, 1]
-        eu, ev = out[s, 2] - au, out[s, 3] - av
-        length = math.sqrt(eu * eu + ev * ev)
-        if length == 0.0:
-            continue
-        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
-        after = before + (eu * dv - ev * du) / length
-        if after >= margin or after >= before:
-            continue
-        t = max((before - margin) / (before - after), 0.0)
-        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
-        if -margin <= along <= length + margin:
-            share = min(share, 0.5 * t)
-    return share
 
 
 @inline
@@ -441,7 +208,7 @@ def relax_dots(
     chains = np.empty((room, 5))
     trace = np.empty((room, 4))
     out = np.empty((2 * room + 3 * corner_cap + 8, 4))
-    stamp = 0
+    stamp = np.int64(0)
     for w in range(start, stop):
         i = w if is_all else which[w]
         x, y = xs[i], ys[i]
@@ -461,11 +228,11 @@ def relax_dots(
             free = max(clear[first_cell + iy * nx + ix] - 1, 0) * h
         is_packed = True
         is_outlined = False
-        n_border = n = 0
+        n_border = n = np.int64(0)
         m = start_lanes(U, V, N, x0, y0, x1, y1)
-        ring = 1
+        ring = np.int64(1)  # numba compiles callees anew for a literal
         while True:
-            reach2, n_near = 0.0, 0
+            reach2, n_near = 0.0, np.int64(0)
             if is_packed:
                 for s in range(6 if ring == 1 else 4 * ring):
                     is_first = ring == 1 and s < 3
@@ -479,7 +246,7 @@ def relax_dots(
                         limit = 4.0 * reach2_of(U, V, m)
                         if ring == 1:
                             least = NEAR * h * h
-                        elif _distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= limit:
+                        elif distance2_to_span(x, y, row, first, last, gx, gy, h, slack) >= limit:
                             continue
                     a = first_cell + row * nx
                     m = cut_lanes_by_run(
@@ -501,7 +268,7 @@ def relax_dots(
                 if m == OVERFLOW:
                     is_packed = False
                     m = start_cell(cell, x0, y0, x1, y1)
-                    ring = 1
+                    ring = np.int64(1)
                     continue
                 reach2 = reach2_of(U, V, m)
             else:
@@ -514,17 +281,17 @@ def relax_dots(
             far = seen_distance(x, y, ring, ix, iy, nx, ny, gx, gy, h, slack)
             is_last = 4.0 * reach2 <= far * far
             if free * free <= reach2 and (is_last or ring > 1):
-                n_near = _gather_edges(
+                n_near = gather_edges(
                     edge_start, edge_of_slot, ring, ix, iy, nx, ny, first_cell, near, seen, stamp
                 )
                 seen_free = seen_distance(x, y, ring, ix, iy, nx, ny, gx, gy, h, 0.0)
-                free = min(seen_free, _border_distance(edges, near, n_near, x, y))
+                free = min(seen_free, border_distance(edges, near, n_near, x, y))
                 stamp += 2
             if free * free <= reach2 and (is_last or ring > 1):
                 # the cell may lean out of the compartment: only its piece counts
                 if is_packed:
                     unpack_lanes(U, V, N, m, xs, ys, x, y, x0, y0, x1, y1, cell)
-                n_border, n, r2 = _outline_within(
+                n_border, n, r2 = outline_within(
                     cell,
                     cell2,
                     m,
@@ -578,8 +345,8 @@ def relax_dots(
             if not is_outlined:
                 if is_packed:
                     unpack_lanes(U, V, N, m, xs, ys, x, y, x0, y0, x1, y1, cell)
-                n_border, n = 0, _outline_of_cell(cell, m, out)
-            area, du, dv, second = _sum_area(out, n)
+                n_border, n = np.int64(0), outline_of_cell(cell, m, out)
+            area, du, dv, second = sum_area(out, n)
             if len(mass):
                 area, du, dv = sum_field(out, n, x, y, mass, moment, frame)
         if area > 0.0:
@@ -594,7 +361,7 @@ def relax_dots(
             du, dv = over * du, over * dv
         if n_border:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
-            share = _free_share(out, n_border, du, dv, margin)
+            share = free_share(out, n_border, du, dv, margin)
             du, dv = share * du, share * dv
         new_x[i] = min(max(x + du, grid_real[c, 4]), grid_real[c, 6])
         new_y[i] = min(max(y + dv, grid_real[c, 5]), grid_real[c, 7])

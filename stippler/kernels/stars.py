@@ -16,8 +16,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import kernel
-from stippler.kernels.relaxation import INNER, sum_field
+from stippler.kernels.border import sum_field
+from stippler.kernels.jit import inner, kernel
+from stippler.kernels.relaxation import INNER
 from stippler.kernels.simd import (
     BUFFER,
     LANES,
@@ -67,7 +68,7 @@ def verify_stars(
         put(V, k, 0.0)
     out = np.empty((LANES, 4))
     for i in range(start, stop):
-        m = n_star[i]
+        m = np.int64(n_star[i])
         todo[i] = 1
         if kind_of_cell[i] != INNER or m < 3 or m + 2 > LANES:
             continue
@@ -108,7 +109,7 @@ def verify_stars(
         free_of_dot[i] -= gone[i]
 
 
-@kernel
+@inner
 def _has_pair(star: I4, n_star: U1, i: int, a: int, b: int) -> bool:
     """Whether dot i lists a and, right after it, b."""
     m = n_star[i]

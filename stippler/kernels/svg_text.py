@@ -40,6 +40,8 @@ def put_number(out, at, value, decimals):
         out[at] = 45
         at += 1
         value = -value
+    if decimals == 3 and value < 10000:
+        return _put_small(out, at, np.uint32(value))
     while decimals > 0 and value % 10 == 0:
         value //= 10
         decimals -= 1
@@ -62,6 +64,31 @@ def put_number(out, at, value, decimals):
     if p == at:  # the point in front
         out[p] = 46
     return end
+
+
+@inline
+def _put_small(out, at, value):
+    """Write thousandths below 10: most numbers of a path."""
+    whole = value // np.uint32(1000)
+    rest = value - whole * np.uint32(1000)
+    if whole > 0:
+        out[at] = 48 + whole
+        at += 1
+    if rest > 0:
+        tenths = rest // np.uint32(100)
+        rest -= tenths * np.uint32(100)
+        out[at] = 46
+        out[at + 1] = 48 + tenths
+        at += 2
+        if rest > 0:
+            hundredths = rest // np.uint32(10)
+            rest -= hundredths * np.uint32(10)
+            out[at] = 48 + hundredths
+            at += 1
+            if rest > 0:
+                out[at] = 48 + rest
+                at += 1
+    return at
 
 
 @kernel
@@ -105,18 +132,14 @@ def _write_paths(start, stop, chain, decimals, out, length):
         at = put_number(row, at, x, decimals)
         at = _put_step(row, at, y, decimals)
         for j in range(1, m + 1):
-            px = np.int64(math.floor(chain[i, j % m, 0] * scale + 0.5))
-            py = np.int64(math.floor(chain[i, j % m, 1] * scale + 0.5))
-            if j % 3 == 1:
-                if j > 1:
-                    continue
-                row[at] = 99
-                at += 1
-                at = put_number(row, at, px - x, decimals)
-            elif j == 5:
-                row[at] = 115
-                at += 1
-                at = put_number(row, at, px - x, decimals)
+            if j % 3 == 1 and j > 1:
+                continue  # what s reflects
+            k = j if j < m else 0
+            px = np.int64(math.floor(chain[i, k, 0] * scale + 0.5))
+            py = np.int64(math.floor(chain[i, k, 1] * scale + 0.5))
+            if j == 1 or j == 5:
+                row[at] = 99 if j == 1 else 115
+                at = put_number(row, at + 1, px - x, decimals)
             else:
                 at = _put_step(row, at, px - x, decimals)
             at = _put_step(row, at, py - y, decimals)
@@ -159,5 +182,5 @@ def paths(dots: ShapedDots, n_segments: int, decimals: int) -> bytes:
     room = len(_D) + len(_Z) + (2 + 6 + 4 * n_segments) * (MAX_NUMBER + 1)
     rows = np.empty((len(chain), room), np.uint8)
     length = np.empty(len(rows), np.int64)
-    run_ranges(_write_paths, len(rows), chain, decimals, rows, length, grain=512)
+    run_ranges(_write_paths, len(rows), chain, decimals, rows, length, grain=256)
     return _joined(rows, length)

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.field import integrate_edge
 from stippler.kernels.jit import inline, kernel
 
 Array = NDArray[Any]
@@ -24,18 +23,73 @@ MAX_CORNERS = 16
 """Corners kept of a cell; a cell with more is rare and is solved as a free disc."""
 
 _ROOM = 64
+_NEAR = 3.5
 
 
 @kernel
-def sum_darkness(start: int, stop: int, darkness: Array, mass: Array) -> None:
-    """Write the running sums of rows ``start..stop``, from 0 to the row's sum."""
+def sum_darkness(start: int, stop: int, darkness: Array, sums: Array) -> None:
+    """Write the running sums of rows ``start..stop``, and the running integral of those.
+
+    `sums` (h, w + 1, 2) holds both at the pixel borders.
+    """
     w = darkness.shape[1]
     for y in range(start, stop):
         total = 0.0
+        integral = 0.0
         for x in range(w):
-            mass[y, x] = total
-            total += darkness[y, x]
-        mass[y, w] = total
+            d = np.float64(darkness[y, x])
+            sums[y, x, 0] = total
+            sums[y, x, 1] = integral
+            integral += total + 0.5 * d
+            total += d
+        sums[y, w, 0] = total
+        sums[y, w, 1] = integral
+
+
+@inline
+def _ink_beside(sums: Array, ax: float, ay: float, bx: float, by: float) -> float:
+    """Return the integral of the running sum G of darkness over an edge, ``G(x, y) dy``.
+
+    Summed over a polygon's edges it is the ink the polygon asks for (Green's theorem). In a row
+    of pixels G is a line or, beyond one pixel, its own integral in x tells the mean.
+    """
+    h = sums.shape[0]
+    w = sums.shape[1] - 1
+    if ay == by:
+        return 0.0
+    sign = 1.0
+    if ay > by:
+        ax, ay, bx, by = bx, by, ax, ay
+        sign = -1.0
+    slope = (bx - ax) / (by - ay)
+    total: float = 0.0
+    y = ay
+    x = ax
+    row = min(max(int(ay), 0), h - 1)
+    while True:
+        last = by <= row + 1.0 or row == h - 1
+        y_end = by if last else row + 1.0
+        x_end = bx if last else ax + (y_end - ay) * slope
+        c = min(max(int(x), 0), w - 1)
+        d = min(max(int(x_end), 0), w - 1)
+        p = x - c
+        q = x_end - d
+        g0 = sums[row, c, 0]
+        g1 = sums[row, d, 0]
+        f0 = sums[row, c + 1, 0] - g0
+        f1 = sums[row, d + 1, 0] - g1
+        if c == d or abs(x_end - x) < 1e-3:
+            mean = 0.5 * (g0 + f0 * p + g1 + f1 * q)
+        else:
+            i0 = sums[row, c, 1] + p * (g0 + 0.5 * f0 * p)
+            i1 = sums[row, d, 1] + q * (g1 + 0.5 * f1 * q)
+            mean = (i1 - i0) / (x_end - x)
+        total += mean * (y_end - y)
+        if last:
+            return sign * total
+        y = y_end
+        x = x_end
+        row += 1
 
 
 @inline
@@ -107,6 +161,12 @@ def _cell_of(cell: Array, near: Array, xy: Array, i: int, cell_start: Array, fra
         cell[2, k] = -1.0
     m = 4
     reach2 = _reach2(cell, m)
+    around = 0
+    for row in range(max(iy - 1, 0), min(iy + 1, ny - 1) + 1):
+        k = row * nx
+        around += cell_start[k + min(ix + 1, nx - 1) + 1] - cell_start[k + max(ix - 1, 0)]
+    near2 = _NEAR * 9.0 * side * side / around  # a disc of about eleven dots
+    from2 = 0.0
     ring = 1
     while True:
         count = 0
@@ -121,7 +181,7 @@ def _cell_of(cell: Array, near: Array, xy: Array, i: int, cell_start: Array, fra
                     a = xy[j, 0] - x
                     b = xy[j, 1] - y
                     d2 = a * a + b * b
-                    if d2 == 0.0 or d2 >= 4.0 * reach2:
+                    if d2 <= from2 or d2 > near2 or d2 >= 4.0 * reach2:
                         continue
                     if count == len(near):  # a crowd: no need to sort it
                         m = _cut(cell, m, a, b, 0.5 * d2, float(j))
@@ -142,6 +202,11 @@ def _cell_of(cell: Array, near: Array, xy: Array, i: int, cell_start: Array, fra
             j = int(near[k, 1])
             m = _cut(cell, m, xy[j, 0] - x, xy[j, 1] - y, 0.5 * d2, float(j))
             reach2 = _reach2(cell, m)
+        if near2 < np.inf:  # once more through the first rings, for the dots farther off
+            from2 = near2
+            near2 = np.inf
+            continue
+        from2 = 0.0
         seen = np.inf
         if ix - ring > 0:
             seen = min(seen, x - (ix - ring) * side)
@@ -163,7 +228,7 @@ def build_cells(
     xy: Array,
     cell_start: Array,
     frame: Array,
-    mass: Array,
+    sums: Array,
     corners: Array,
     beyond: Array,
     n_corners: Array,
@@ -178,8 +243,8 @@ def build_cells(
     frame : (6,) float64
         Width and height of the page, side of a grid cell, columns and rows of the grid, and half
         the side of the box that bounds a cell.
-    mass : (h, w + 1) float64
-        Running sums of darkness along rows.
+    sums : (h, w + 1, 2) float64
+        From `sum_darkness`.
     corners : (n, `MAX_CORNERS`, 2) float32
         Of the cells, relative to the dot.
     beyond : (n, `MAX_CORNERS`) int32
@@ -198,10 +263,9 @@ def build_cells(
         total = 0.0
         for k in range(m):
             j = k + 1 if k + 1 < m else 0
-            t, _mx, _my = integrate_edge(
-                mass, mass, x, y, cell[0, k], cell[1, k], cell[0, j], cell[1, j]
+            total += _ink_beside(
+                sums, x + cell[0, k], y + cell[1, k], x + cell[0, j], y + cell[1, j]
             )
-            total += t
         asked[i] = max(total, 0.0)
         n_corners[i] = m if 0 < m <= MAX_CORNERS else 0
         for k in range(n_corners[i]):
@@ -252,6 +316,7 @@ def fit_radii(
     corners: Array,
     n_corners: Array,
     asked: Array,
+    before: Array,
     low: float,
     high: float,
     radii: Array,
@@ -259,17 +324,20 @@ def fit_radii(
 ) -> None:
     """Solve the radius of each dot for the ink its cell asks for, within ``low..high``.
 
-    `left` gets the ink that the range did not allow: above 0 missing, below 0 too much.
+    Dots that ask for the same as `before` are left as they are. `left` gets the ink that the
+    range did not allow: above 0 missing, below 0 too much.
     """
     for i in range(start, stop):
         m = n_corners[i]
         q = asked[i]
-        r = min(max(math.sqrt(q / math.pi), low), high)
+        if q == before[i]:
+            continue
+        r = min(max(math.sqrt(max(q, 0.0) / math.pi), low), high)
         a = low
         b = high
         area, arc = disc_in_cell(corners[i], m, r)
         for _ in range(40):
-            if abs(area - q) <= 1e-7 * q:
+            if abs(area - q) <= 1e-7 * abs(q):
                 break
             if area < q:
                 a = r
@@ -295,14 +363,27 @@ def find_room(
     start: int,
     stop: int,
     corners: Array,
+    beyond: Array,
     n_corners: Array,
     low: float,
     high: float,
     radii: Array,
+    left: Array,
     room: Array,
 ) -> None:
-    """Write how much less and how much more ink each dot could lay down: ``room[i, 0..1]``."""
+    """Write how much less and how much more ink each dot could lay down: ``room[i, 0..1]``.
+
+    Only where a neighbour has ink left over; 0 elsewhere.
+    """
     for i in range(start, stop):
+        wanted = False
+        for k in range(n_corners[i]):
+            j = beyond[i, k]
+            wanted = wanted or (j >= 0 and left[j] != 0.0)
+        room[i, 0] = 0.0
+        room[i, 1] = 0.0
+        if not wanted:
+            continue
         area, _arc = disc_in_cell(corners[i], n_corners[i], radii[i])
         least, _arc = disc_in_cell(corners[i], n_corners[i], low)
         most, _arc = disc_in_cell(corners[i], n_corners[i], high)
@@ -355,4 +436,4 @@ def pass_on(
                 q += given[j] * room[i, 1 if given[j] > 0.0 else 0]
             if given[i] != 0.0:
                 q -= given[i] * room[j, 1 if given[i] > 0.0 else 0]
-        new[i] = max(q, 0.0)
+        new[i] = q

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import inline, kernel
+from stippler.kernels.jit import inline, inner
 from stippler.kernels.simd import (
     FRONT,
     LANES,
@@ -57,10 +57,10 @@ def start_lanes(U: Any, V: Any, N: Any, x0: float, y0: float, x1: float, y1: flo
         put(V, k + 3, y1)
     for k in range(8):
         put(N, k, np.int32(WALL - (k & 3)))
-    return 4
+    return int(np.int64(4))
 
 
-@kernel
+@inner
 def _longest_out(U: Any, V: Any, m: int, a: float, b: float, mask: int) -> int:
     """Return the run of corners out around the one that is furthest out."""
     best = 0
@@ -164,7 +164,7 @@ def start_cell(cell: F8, x0: float, y0: float, x1: float, y1: float) -> int:
     cell[2, 3], cell[3, 3], cell[4, 3] = -1.0, 0.0, -x0
     for k in range(4):
         cell[5, k] = WALL - k
-    return 4
+    return int(np.int64(4))
 
 
 @inline
@@ -201,7 +201,7 @@ def unpack_lanes(
             cell[2, k], cell[3, k], cell[4, k] = a, b, 0.5 * (a * a + b * b)
 
 
-@kernel
+@inner
 def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> int:
     """Cut away the part with ``a x + b y > c``; return the corners left, `OVERFLOW` if too many.
 
@@ -290,7 +290,7 @@ def _copy_corner(cell: F8, source: int, target: int) -> None:
         cell[r, target] = cell[r, source]
 
 
-@kernel
+@inner
 def reach2_of_cell(cell: F8, m: int) -> float:
     """Return the square of the largest distance of a corner from the dot."""
     best = 0.0

@@ -61,7 +61,12 @@ class DotBuffer:
         return grown
 
     def set_positions(
-        self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32], origin_mm: Origin
+        self,
+        position_mm: NDArray[np.float64],
+        radius_mm: NDArray[np.float32],
+        origin_mm: Origin,
+        *,
+        settled: bool,
     ) -> bool:
         """Upload positions and radii; shapes stay if there are as many dots as before."""
         same = len(position_mm) == self.n
@@ -73,6 +78,7 @@ class DotBuffer:
         rows = self._row_of_slot
         gpu_dots.pack_places(position_mm, radius_mm, origin_mm, rows, self.rows)
         self.max_radius_mm = float(radius_mm.max(initial=0.0))
+        self._knows_shares = not settled
         self._upload()
         return grown
 

@@ -67,16 +67,25 @@ class Renderer:
         """Upload all dots, and which of them are selected."""
         self._bound(self._dots.buffer.set(dots, self._chosen(dots, selected), self._origin_mm))
 
-    def set_positions(self, position_mm: ArrayLike, radius_mm: ArrayLike) -> None:
+    def set_positions(
+        self, position_mm: ArrayLike, radius_mm: ArrayLike, *, settled: bool = False
+    ) -> None:
         """Upload positions and radii, as a worker hands them back while it is at work.
 
         Dots keep their shapes if there are as many as before; else all are round.
+
+        Parameters
+        ----------
+        settled : bool
+            The worker is done: overlapping dots may take their time (10 to 20 ms for 100,000) to
+            be weighed, so that the tone is right where pixels are larger than dots.
         """
         position = np.ascontiguousarray(position_mm, np.float64).reshape(-1, 2)
         radius = np.ascontiguousarray(
             np.broadcast_to(np.asarray(radius_mm, np.float32), (len(position),))
         )
-        self._bound(self._dots.buffer.set_positions(position, radius, self._origin_mm))
+        buffer = self._dots.buffer
+        self._bound(buffer.set_positions(position, radius, self._origin_mm, settled=settled))
 
     def update_dots(
         self, dots: Dots, rows: NDArray[np.intp], selected: NDArray[np.bool_] | None = None

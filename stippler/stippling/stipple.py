@@ -90,6 +90,20 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=lack)
 
 
+def notes_on(result: Progress) -> tuple[str, ...]:
+    """Say in words what a finished run fell short of."""
+    lack = result.shortfall
+    if lack is None:
+        return ()
+    notes = list(lack.notes)
+    if lack.share > 0.0005:
+        notes.append(
+            f"{100 * lack.share:.1f} % of the page is too dark for these dots "
+            f"(by {lack.missing:.2f} of 1); allow larger dots, or more of them"
+        )
+    return tuple(notes)
+
+
 def pulse_density(
     darkness: NDArray[np.float32],
     dots: int = DEFAULT_DOTS,

@@ -33,7 +33,7 @@ _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
 for relaxed dots of locally equal size."""
 
 _BINS = 1024
-_DOTS_AT_ONCE = 24_000
+_DOTS_AT_ONCE = 12_000
 _ROUNDS = 4  # of passing on ink that a dot cannot lay down
 _ENOUGH = 2e-4  # share of all ink that need not be passed on
 _REACH = 12.0  # mean spacings; a cell reaches no farther from its dot to any side
@@ -212,13 +212,13 @@ def solve_radii(
     cells = _Cells(n)
     for share in cells.build(points[order], cell_start, frame, darkness):
         yield 0.8 * share, result
-    radii, left = cells.fit(low, high)
+    cells.fit(low, high)
     for _ in range(_ROUNDS):
-        if np.abs(left).sum() <= _ENOUGH * cells.asked.sum():
+        if np.abs(cells.left).sum() <= _ENOUGH * cells.asked.sum():
             break
-        cells.even_out(low, high, radii, left)
-        radii, left = cells.fit(low, high)
-    result[order] = radii
+        cells.even_out(low, high)
+        cells.fit(low, high)
+    result[order] = cells.radii
     yield 1.0, result
 
 
@@ -229,7 +229,8 @@ class _Cells:
         self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
         self.beyond = np.empty((n, MAX_CORNERS), np.int32)
         self.n_corners = np.empty(n, np.uint8)
-        self.asked = np.empty(n)
+        self.asked, self.before = np.empty(n), np.full(n, -1.0)
+        self.radii, self.left = np.empty(n), np.empty(n)
 
     def build(
         self,
@@ -240,34 +241,41 @@ class _Cells:
     ) -> Iterator[float]:
         """Build the cells of dots sorted by grid cell; yield the share done."""
         n, (h, w) = len(xy), darkness.shape
-        mass = np.empty((h, w + 1))
-        run_ranges(sum_darkness, h, darkness, mass, grain=64)
+        sums = np.empty((h, w + 1, 2))
+        run_ranges(sum_darkness, h, darkness, sums, grain=64)
         results = self.corners, self.beyond, self.n_corners, self.asked
         for first in range(0, n, _DOTS_AT_ONCE):
             last = min(first + _DOTS_AT_ONCE, n)
 
             def part(start: int, stop: int, first: int = first) -> None:
-                build_cells(first + start, first + stop, xy, cell_start, frame, mass, *results)
+                build_cells(first + start, first + stop, xy, cell_start, frame, sums, *results)
 
             run_ranges(part, last - first)
             yield last / n
 
-    def fit(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return radii within a range, and the ink it did not allow."""
-        n = len(self.asked)
-        radii, left = np.empty(n), np.empty(n)
-        run_ranges(fit_radii, n, self.corners, self.n_corners, self.asked, low, high, radii, left)
-        return radii, left
+    def fit(self, low: float, high: float) -> None:
+        """Find radii within a range, and the ink `left` that it does not allow."""
+        run_ranges(
+            fit_radii,
+            len(self.asked),
+            self.corners,
+            self.n_corners,
+            self.asked,
+            self.before,
+            low,
+            high,
+            self.radii,
+            self.left,
+        )
+        self.before = self.asked
 
-    def even_out(
-        self, low: float, high: float, radii: NDArray[np.float64], left: NDArray[np.float64]
-    ) -> None:
+    def even_out(self, low: float, high: float) -> None:
         """Ask neighbours for the ink that a dot's range does not allow."""
-        n = len(self.asked)
+        n, corners, beyond, count = len(self.asked), self.corners, self.beyond, self.n_corners
         room, given, new = np.empty((n, 2)), np.empty(n), np.empty(n)
-        run_ranges(find_room, n, self.corners, self.n_corners, low, high, radii, room)
-        run_ranges(sum_room, n, self.beyond, self.n_corners, left, room, given)
-        run_ranges(pass_on, n, self.beyond, self.n_corners, room, given, self.asked, new)
+        run_ranges(find_room, n, corners, beyond, count, low, high, self.radii, self.left, room)
+        run_ranges(sum_room, n, beyond, count, self.left, room, given)
+        run_ranges(pass_on, n, beyond, count, room, given, self.asked, new)
         self.asked = new
 
 

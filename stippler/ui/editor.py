@@ -25,9 +25,14 @@ from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.sight import draw_view
+<<<<<<< HEAD
 from stippler.ui.panels.status import FrameRate, draw_status
 from stippler.ui.panels.tools import draw_tools
+=======
+from stippler.ui.panels.status import draw_status
+>>>>>>> main
 from stippler.ui.pointer import Pointer
+from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule
 from stippler.ui.session import Session
 from stippler.ui.states import Idle
@@ -85,6 +90,11 @@ class Editor:
         if 0 in self._window.size_px:  # minimised
             return _MINIMISED_S
         return self._schedule.sleep_s(self._clock())
+
+    @property
+    def idle(self) -> bool:
+        """Whether all that has happened so far has been drawn."""
+        return self._schedule.idle
 
     def step(self) -> bool:
         """Take what has happened; draw a frame if it is time for one, and say whether."""

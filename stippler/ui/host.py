@@ -48,11 +48,10 @@ class Host:
     def settle(self) -> None:
         """Go on until what has happened so far has been drawn."""
         for _ in range(_SETTLED):
-            if self._step(0.0):
-                continue
-            if self._editor.sleep_s() > _SOON_S:
-                return
-            self._step(_SOON_S)
+            if not self._step(0.0):
+                if self._editor.idle:
+                    return
+                self._step(_SOON_S)
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Go on until something is true.
@@ -128,11 +127,8 @@ class Host:
 
     def fill(self, label: str, text: str) -> None:
         """Replace what stands in a field, by its label, and press Enter."""
-        self.move(*self.place(label))
-        for _ in range(3):  # the third click marks the line
-            self.press()
-            self.release()
-        self.settle()
+        if not self._editor.gui.wants_keys:
+            self.click(label)  # marks all
         self.type(text)
         self.key("enter")
 

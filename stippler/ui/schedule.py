@@ -7,6 +7,7 @@ import math
 _FRAMES_AFTER_INPUT = 5  # a click takes ImGui three: move, press, release; then it settles
 _TOOLTIP_S = 0.5  # a resting pointer may want its tooltip after this
 _LONGEST_SLEEP_S = 10.0
+_LONGEST_REST_S = 0.25
 _FREE_S = 0.02  # frames this fast need no rest
 
 
@@ -41,9 +42,14 @@ class Schedule:
         self._frames = max(self._frames - 1, 1 if moving else 0)
         self._waiting = False
         cost = ended_s - began_s
-        self._not_before_s = ended_s + cost if cost > _FREE_S else -math.inf
+        self._not_before_s = ended_s + min(cost, _LONGEST_REST_S) if cost > _FREE_S else -math.inf
         if self._wake_at_s <= ended_s:
             self._wake_at_s = math.inf
+
+    @property
+    def idle(self) -> bool:
+        """Whether all that has happened so far has been drawn."""
+        return self._frames == 0 and not self._waiting
 
     def due(self, now_s: float) -> bool:
         """Return whether a frame is to be drawn now."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 from stippler.errors import ParameterError
 from stippler.ui import work
-from stippler.ui.messages import ERROR, INFO, WARNING, Messages
+from stippler.ui.messages import ERROR, WARNING, Messages
+from stippler.ui.rates import StepRate
 from stippler.ui.work import Source, Work
 
 if TYPE_CHECKING:
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update, Worker
     from stippler.stippling.plan import Plan
+    from stippler.stippling.stipple import Progress
 
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 PHASES: tuple[Phase, ...] = get_args(Phase)
-_RATE_WINDOW_S = 1.0
 
 
 class Stipple(Protocol):
@@ -91,12 +91,12 @@ class Session:
         self.messages = Messages(clock)
         self.phase: Phase = "empty"
         self.stage, self.done, self.total = "", 0, 0
-        self.steps_per_s = 0.0
         self._asked: Source | None = None  # what the job that runs was asked for
+        self._last: Progress | None = None
         self._request: int | None = None
         self._page: Page | None = None  # a page that is asked for
         self._export_request: int | None = None
-        self._steps: deque[tuple[float, int]] = deque()
+        self._steps = StepRate()
 
     # --- what a person does -----------------------------------------------------------------
 
@@ -161,7 +161,7 @@ class Session:
         if self.phase == "paused":
             self._worker.pause(False)
             self.phase = "running"
-            self._steps.clear()
+            self._steps.forget()
 
     def stop(self) -> None:
         """End the job; the dots that are there stay, and become the drawing's."""
@@ -248,6 +248,7 @@ class Session:
         return self._export_request is not None
 
     @property
+<<<<<<< HEAD
     def relaxing(self) -> bool:
         """Whether the job that runs moves the drawing's own dots."""
         return self.busy and self.editing is not None and self.editing.in_run
@@ -256,6 +257,11 @@ class Session:
     def paintable(self) -> bool:
         """Whether the dots can be edited now: they are there, and no job makes new ones."""
         return self.editing is not None and (not self.busy or self.relaxing)
+=======
+    def steps_per_s(self) -> float:
+        """Relaxation steps a second in the work that runs, or the last; 0 before any."""
+        return self._steps.per_s
+>>>>>>> main
 
     @property
     def n_dots(self) -> int:
@@ -290,6 +296,7 @@ class Session:
         self._end_run()
         known = self.reference if source == self.source else None
         plan, stipple = self.plan, self._stipple
+<<<<<<< HEAD
         self._page, self._asked, self.running_plan = None, source, plan
         first = work.READ if known is None else "first dots"
         self._run("running", first, lambda: stipple(source, plan, known))
@@ -299,6 +306,13 @@ class Session:
         self.phase, self.stage, self.done, self.total = phase, stage, 0, 0
         self.steps_per_s = 0.0
         self._steps.clear()
+=======
+        self._request = self._worker.start(lambda: stipple(source, plan, known))
+        self._asked, self.running_plan, self.phase = source, plan, "running"
+        self.stage, self.done, self.total = work.READ if known is None else "first dots", 0, 0
+        self._last = None
+        self._steps = StepRate()
+>>>>>>> main
 
     def _end_run(self) -> None:
         if self.editing is not None:
@@ -309,6 +323,7 @@ class Session:
         if result.reference is not None and result.reference is not self.reference:
             self._adopt(result.reference)
         if result.progress is not None:
+            self._last = result.progress
             self.position_mm, self.radius_mm = (
                 result.progress.position_mm,
                 result.progress.radius_mm,
@@ -317,7 +332,7 @@ class Session:
         if result.moved_mm is not None and self.editing is not None:
             self.editing.merge(result.moved_mm)
         if result.stage == "relax":
-            self._measure(result.done)
+            self._steps.note(self._clock(), result.done)
 
     def _adopt(self, reference: Reference) -> None:
         from stippler.drawing.drawing import Page
@@ -334,15 +349,6 @@ class Session:
         self.drawing.reference = reference
         self.editing = self.position_mm = self.radius_mm = None
         self.revision += 1
-
-    def _measure(self, done: int) -> None:
-        now = self._clock()
-        self._steps.append((now, done))
-        while now - self._steps[0][0] > _RATE_WINDOW_S and len(self._steps) > 2:
-            self._steps.popleft()
-        (t0, d0), (t1, d1) = self._steps[0], self._steps[-1]
-        if t1 > t0:
-            self.steps_per_s = (d1 - d0) / (t1 - t0)
 
     def _end(self, phase: Phase) -> None:
         self._request, self.phase = None, phase
@@ -387,9 +393,18 @@ class Session:
         return work.frozen(drawing)
 
     def _report(self) -> None:
+<<<<<<< HEAD
         if self.source is None:
             return
         if not self.n_dots:
+=======
+        """Say what has been drawn, and what it falls short of."""
+        from stippler.stippling.stipple import notes_on
+
+        self.messages.say(f"{self.n_dots:,} dots drawn")
+        notes = notes_on(self._last) if self._last is not None else ()
+        if notes:
+            self.messages.say("; ".join(notes), WARNING)
+        elif not self.n_dots:
+>>>>>>> main
             self.messages.say("the picture is all white: a drawing without dots", WARNING)
-        else:
-            self.messages.say(f"{self.n_dots:,} dots drawn", INFO)

@@ -15,6 +15,7 @@ from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
 
 Rect = tuple[float, float, float, float]
 LABEL_WIDTH = 84.0
+_MARK_ALL = imgui.InputTextFlags_.auto_select_all
 
 
 @dataclass(slots=True)
@@ -149,7 +150,7 @@ class Widgets:
         self.label(label)
         if spare:
             imgui.set_next_item_width(-spare)
-        _, typed = imgui.input_int(f"##{label}", value, 0)
+        _, typed = imgui.input_int(f"##{label}", value, 0, 0, _MARK_ALL)
         done = imgui.is_item_deactivated_after_edit()
         self.note(label)
         self.tip(tip)
@@ -158,7 +159,7 @@ class Widgets:
     def length(self, label: str, value: float, tip: str, unit: str = "mm") -> float:
         """Take a number with a unit; it counts when Enter is pressed or the field is left."""
         self.label(label)
-        _, typed = imgui.input_float(f"##{label}", value, 0.0, 0.0, f"%.4g {unit}")
+        _, typed = imgui.input_float(f"##{label}", value, 0.0, 0.0, f"%.4g {unit}", _MARK_ALL)
         done = imgui.is_item_deactivated_after_edit()
         self.note(label)
         self.tip(tip)

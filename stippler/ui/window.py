@@ -12,6 +12,7 @@ import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from imgui_bundle import imgui  # noqa: F401  # isort: skip - first: glfw then uses its library
 import glfw
@@ -51,6 +52,26 @@ _NO_GL = (
     "install a graphics driver with OpenGL 3.3 (Debian, Ubuntu: apt install libgl1 "
     "libgl1-mesa-dri libglx-mesa0 libegl1), or draw without a window: stippler render"
 )
+
+
+class _Current:
+    """The window's GL context as moderngl asks for it, whichever system made it.
+
+    moderngl's own search asks GLX alone, which does not know of an EGL context.
+    """
+
+    def load_opengl_function(self, name: str) -> int:
+        address: int = ctypes.cast(glfw.get_proc_address(name), ctypes.c_void_p).value or 0
+        return address
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *error: object) -> None:
+        pass
+
+    def release(self) -> None:
+        pass
 
 
 class Window:
@@ -118,8 +139,9 @@ class Window:
         return handle
 
     def _context(self) -> moderngl.Context:
+        context: Any = _Current()
         try:
-            return moderngl.create_context(require=330)
+            return moderngl.create_context(require=330, context=context)
         except Exception as error:
             raise DisplayError(f"OpenGL 3.3 is not there ({error})", do=_NO_GL) from error
 

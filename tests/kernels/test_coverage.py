@@ -88,15 +88,16 @@ def test_a_radius_gives_the_ink_asked_for(angles, size, share):
     asked = np.array([min(share, 0.999) * cell.area])
     radius, left = np.empty(1), np.empty(1)
     counts = np.array([len(corners)], np.uint8)
-    fit_radii(0, 1, store, counts, asked, 1e-3, 10.0, radius, left)
+    before = np.full(1, -1.0)
+    fit_radii(0, 1, store, counts, asked, before, 1e-3, 10.0, radius, left)
     ink = Point(0, 0).buffer(radius[0], quad_segs=256).intersection(cell).area
     assert ink == pytest.approx(asked[0], rel=2e-4, abs=1e-5)
     assert abs(left[0]) <= 1e-5
     low, high = 0.9 * radius[0], 0.95 * radius[0]
-    fit_radii(0, 1, store, counts, asked, low, high, radius, left)
+    fit_radii(0, 1, store, counts, asked, before, low, high, radius, left)
     assert radius[0] == high
     assert left[0] > 0
-    fit_radii(0, 1, store, counts, asked, 1.1 * high, 1.2 * high, radius, left)
+    fit_radii(0, 1, store, counts, asked, before, 1.1 * high, 1.2 * high, radius, left)
     assert radius[0] == pytest.approx(1.1 * high)
     assert left[0] < 0
 
@@ -108,14 +109,12 @@ def test_the_union_of_equal_discs_is_the_sum_over_their_cells(seed, r):
     w = h = 16
     points = rng.random((60, 2)) * (w, h)
     cells, _ = cells_of(points, frozen(np.ones((h, w))))
-    n = len(points)
-    radii, left = np.full(n, r), np.empty(n)
-    fit_radii(0, n, cells.corners, cells.n_corners, cells.asked, r, r, radii, left)
+    cells.fit(r, r)
     if (cells.n_corners == 0).any():
         return
     union = shapely.union_all(shapely.buffer(shapely.points(points), r, quad_segs=64))
     true = union.intersection(box(0, 0, w, h)).area
-    assert (cells.asked - left).sum() == pytest.approx(true, rel=1e-3)
+    assert (cells.asked - cells.left).sum() == pytest.approx(true, rel=1e-3)
 
 
 @settings(max_examples=30)
@@ -124,12 +123,12 @@ def test_passing_ink_on_loses_none_and_helps(seed, low, ratio):
     rng = np.random.default_rng(seed)
     darkness = frozen(rng.random((20, 20)))
     cells, _ = cells_of(rng.random((60, 2)) * 20, darkness)
-    radii, left = cells.fit(low, low * ratio)
-    asked, missed = cells.asked.sum(), np.abs(left).sum()
-    cells.even_out(low, low * ratio, radii, left)
+    cells.fit(low, low * ratio)
+    asked, missed = cells.asked.sum(), np.abs(cells.left).sum()
+    cells.even_out(low, low * ratio)
     assert cells.asked.sum() == pytest.approx(asked, rel=1e-6)
-    _, after = cells.fit(low, low * ratio)
-    assert np.abs(after).sum() <= missed * (1 + 1e-6) + 1e-6
+    cells.fit(low, low * ratio)
+    assert np.abs(cells.left).sum() <= missed * (1 + 1e-6) + 1e-6
 
 
 @given(st.integers(0, 10**6), st.sampled_from([0.5, 0.95, 1.0]))

@@ -1,7 +1,7 @@
 """The frame against resvg's picture of the SVG: a rasteriser that no one here wrote.
 
-At the size of the frame resvg itself loses 2.5 % of the ink of dots one pixel in radius (0.6 % at
-seven pixels), so it is asked for a large picture, which is then averaged.
+At the size of the frame resvg itself loses about 2.5 % of the ink of dots two pixels in radius, so
+it is asked for a large picture, which is then averaged.
 """
 
 import functools
@@ -18,8 +18,8 @@ from stippler.drawing.drawing import Drawing, Page
 from stippler.files.svg import svg_chunks
 
 PAGE = Page(40, 30)
-LARGE = 160  # pixels a mm
-SCALES = (4, 10, 16, 32)  # dots from half a pixel to seven in radius
+LARGE = 96  # pixels a mm
+SCALES = (4, 8, 16, 32)  # dots from 0.6 to 8 pixels in radius
 KINDS = ("round", "smooth", "rough")
 TILE = 16
 INK = 0.005  # agreement in ink, of all of it

@@ -98,6 +98,22 @@ def test_the_tone_of_overlapping_dots_is_their_union(renderer, ink, dark, tolera
         assert tone(renderer, ink, dots, mean_px) == pytest.approx(truth, rel=tolerance), mean_px
 
 
+def test_settled_positions_have_the_tone_of_all_dots(renderer, ink):
+    points = relaxed(900)
+    dots = with_areas(points, np.full(len(points), 1.1 * (SIDE - 4) ** 2 / len(points)))
+    expected = tone(renderer, ink, dots, 0.4)
+    renderer.set_dots(Dots.none())
+    scale = 0.4 / float(dots.radius_mm.mean())
+    n = math.ceil(SIDE * scale) + 2
+    camera = Camera((SIDE / 2, SIDE / 2), scale)
+    renderer.set_positions(dots.position_mm, dots.radius_mm)
+    passing = ink(camera, (n, n)).sum() / (SIDE * scale) ** 2
+    renderer.set_positions(dots.position_mm, dots.radius_mm, settled=True)
+    settled = ink(camera, (n, n)).sum() / (SIDE * scale) ** 2
+    assert settled == pytest.approx(expected, rel=1e-3)
+    assert passing > 1.01 * expected  # what settling is for
+
+
 def test_shares_add_up_to_the_union():
     rng = np.random.default_rng(2)
     for n, radius in ((300, 0.6), (300, 1.5), (40, 6.0), (1, 1.0), (2, 30.0)):

@@ -287,6 +287,9 @@ def test_nothing_is_drawn_while_nothing_changes() -> None:
     assert drawn(schedule, 0.0) == 5
     assert schedule.sleep_s(0.0) == 10.0
     assert not schedule.due(9.9)
+    assert schedule.idle
+    schedule.note_result()
+    assert not schedule.idle
 
 
 def test_input_is_drawn_at_once_and_once_more_for_the_tooltip() -> None:
@@ -310,6 +313,9 @@ def test_results_wait_as_long_as_a_slow_frame_took() -> None:
     schedule.note_frame(1.061, 1.065, moving=False)  # a fast one
     schedule.note_result()
     assert schedule.due(1.065)
+    schedule.note_frame(2.0, 9.0, moving=False)  # something was loaded: no rest of 7 seconds
+    schedule.note_result()
+    assert schedule.due(9.3)
 
 
 def test_input_does_not_wait_for_a_slow_frame() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from stippler.errors import PictureError
 from stippler.jobs.worker import Update
 from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress
+from stippler.stippling.tone import Shortfall
 from stippler.ui.messages import ERROR, INFO, WARNING
 from stippler.ui.session import Session
 from stippler.ui.work import Source, Work
@@ -262,6 +264,16 @@ def test_an_all_white_picture_is_a_drawing_without_dots(stage: Stage) -> None:
     assert stage.session.phase == "done"
     assert stage.session.drawing is not None
     assert "all white" in stage.session.messages.log[-1].text
+
+
+def test_what_a_drawing_falls_short_of_is_said(stage: Stage) -> None:
+    stage.session.open(Path("night.png"))
+    lack = Shortfall(share=0.25, missing=0.1)
+    last = replace(dots(4, "done"), shortfall=lack)
+    stage.tell(Work("done", 1, 1, reference(), last), "finished")
+    line = stage.session.messages.log[-1]
+    assert line.level == WARNING
+    assert "25.0 % of the page" in line.text
 
 
 def test_steps_a_second_come_from_the_clock(stage: Stage) -> None:

@@ -221,6 +221,23 @@ def test_export_asks_before_it_replaces_a_file(desk, picture: Path, tmp_path: Pa
     assert str(out) in desk.host.said()
 
 
+def test_a_png_is_exported_while_the_window_draws(desk, picture: Path, tmp_path: Path) -> None:
+    open_and_finish(desk, picture)
+    desk.host.key("s", ctrl=True)
+    desk.host.fill("path", str(tmp_path / "out.png"))
+    desk.host.until(lambda: not desk.app.session.exporting, "the export")
+    assert str(tmp_path / "out.png") in desk.host.said()
+    with Image.open(tmp_path / "out.png") as out:
+        assert out.width == round(120 / 25.4 * 600)
+        assert out.convert("L").resize((60, 45)).getextrema()[0] < 200
+    page = np.s_[:660, 300:]
+    before, drawn = desk.host.screenshot()[page], desk.app.editor.canvas.n_drawn
+    desk.host.key("t")
+    desk.host.key("t")
+    assert desk.app.editor.canvas.n_drawn > drawn
+    assert np.array_equal(desk.host.screenshot()[page], before)  # the window's GL is as it was
+
+
 def test_an_unknown_ending_is_one_line(desk, picture: Path, tmp_path: Path) -> None:
     open_and_finish(desk, picture)
     desk.host.key("s", ctrl=True)

@@ -2,37 +2,14 @@
 
 from __future__ import annotations
 
-from collections import deque
-
 from imgui_bundle import imgui
 
 from stippler.camera import Point
 from stippler.ui.messages import INFO
+from stippler.ui.rates import FrameRate
 from stippler.ui.session import Session
 from stippler.ui.theme import SMALL_PX, STATUS_HEIGHT
 from stippler.ui.widgets import Widgets
-
-
-class FrameRate:
-    """Frames a second over the last second in which frames were drawn."""
-
-    def __init__(self) -> None:
-        self._at: deque[float] = deque(maxlen=240)
-
-    def tick(self, now_s: float) -> None:
-        """Note a frame."""
-        if self._at and now_s - self._at[-1] > 0.5:  # slept: the pause is no slow frame
-            self._at.clear()
-        self._at.append(now_s)
-        while now_s - self._at[0] > 1.0:
-            self._at.popleft()
-
-    @property
-    def per_s(self) -> float:
-        """The rate; 0 while it is not known."""
-        if len(self._at) < 3:
-            return 0.0
-        return (len(self._at) - 1) / max(self._at[-1] - self._at[0], 1e-9)
 
 
 def draw_status(

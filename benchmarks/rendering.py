@@ -1,0 +1,216 @@
+"""Frames, uploads, outlines and pictures; on a GPU, frames by its own clock.
+
+python -m benchmarks.rendering [--quick]
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import moderngl
+import numpy as np
+
+from benchmarks.figures import Figure, median_s
+from stippler.camera import Camera
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.pens import Preview, ShapeChange
+from stippler.files.svg import svg_chunks
+from stippler.headless import open_context
+from stippler.kernels.dot_shape import bezier_outlines
+from stippler.render.renderer import Renderer
+from stippler.render.state import release_target
+
+PAGE = Page(200.0, 125.0)
+WINDOW = (1280, 800)
+UHD = (3840, 2160)
+
+_PICTURE = """
+import sys
+from benchmarks.rendering import drawing
+from stippler.export import save
+save(drawing(int(sys.argv[1])), sys.argv[2], dpi=3840 / 200 * 25.4)
+"""
+
+
+def drawing(n: int, kind: str = "round") -> Drawing:
+    """Make a page that dots cover to about a half, of sizes 1 : 2, evenly spread."""
+    rng = np.random.default_rng(0)
+    per_row = round((n * PAGE.width_mm / PAGE.height_mm) ** 0.5)
+    row, column = np.divmod(np.arange(n), per_row)
+    grid = np.column_stack([column, row]) + 0.5 + rng.uniform(-0.3, 0.3, (n, 2))
+    step = PAGE.width_mm / per_row
+    one = Drawing.blank(PAGE)
+    one.dots = Dots.round(grid * step, rng.uniform(0.26, 0.52, n) * step)
+    if kind != "round":
+        one.dots.elongation[:] = rng.uniform(1, 4, n)
+        one.dots.angle_rad[:] = rng.uniform(0, 6, n)
+    if kind == "rough":
+        one.dots.roughness[:] = rng.uniform(0, 1, n)
+    return one
+
+
+def figures(quick: bool = False) -> list[Figure]:
+    """Measure all; `quick` repeats less."""
+    repeats = 7 if quick else 15
+    ctx = open_context()
+    try:
+        results = _frames(ctx, repeats) + _uploads(ctx, repeats)
+        results += _gpu_frames(ctx, repeats)
+    finally:
+        ctx.release()
+    return results + _outlines(repeats) + _pictures(3 if quick else 5)
+
+
+class _Stage:
+    """A renderer and a framebuffer with a drawing on it."""
+
+    def __init__(self, ctx: moderngl.Context, one: Drawing, size: tuple[int, int]) -> None:
+        self.ctx, self.size = ctx, size
+        self.renderer = Renderer(ctx)
+        self.renderer.set_page(one.page.width_mm, one.page.height_mm)
+        self.renderer.set_dots(one.dots)
+        self.target = ctx.framebuffer([ctx.renderbuffer(size, 4)])
+        self.camera = Camera.fit(one.page, size)
+
+    def frame(self) -> None:
+        """Draw, and wait until it is drawn."""
+        self.renderer.draw(self.camera, self.size, self.target)
+        self.ctx.finish()
+
+    def release(self) -> None:
+        release_target(self.ctx, self.target)
+        self.renderer.release()
+
+
+def _frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
+    results = []
+    name = "software GL" if is_software(ctx) else "this GPU"
+    for kind in ("round", "smooth", "rough"):
+        stage = _Stage(ctx, drawing(100_000, kind), WINDOW)
+        wall = 1e3 * median_s(stage.frame, repeats, warm=2)
+        reach = 60.0 if kind == "round" else None
+        label = {"round": "round", "smooth": "elongated", "rough": "rough, elongated"}[kind]
+        results.append(
+            Figure(f"frame, 100,000 {label} dots, 1280 x 800", wall, "ms", reach, note=name)
+        )
+        if kind == "round":
+            results += [_preview_cost(stage, repeats), _zoomed(stage, repeats)]
+        stage.release()
+    return results
+
+
+def _zoomed(stage: _Stage, repeats: int) -> Figure:
+    stage.camera = stage.camera.zoomed(40.0, (640, 400), WINDOW)
+    return Figure(
+        "frame, the same zoomed in 40 times", 1e3 * median_s(stage.frame, repeats, warm=2), "ms"
+    )
+
+
+def _preview_cost(stage: _Stage, repeats: int) -> Figure:
+    """Time what a preview asks of the CPU: its uniforms."""
+    tip = Preview(ShapeChange(radius=(1.1, 0.0)), "tip", (100, 60), 10.0)
+
+    def both() -> None:
+        stage.renderer.set_preview(tip)
+        stage.renderer.set_preview(None)
+
+    return Figure("setting a preview on 100,000 dots", 1e3 * median_s(both, repeats), "ms")
+
+
+def _uploads(ctx: moderngl.Context, repeats: int) -> list[Figure]:
+    one = drawing(200_000, "rough")
+    dots = one.dots
+    stage = _Stage(ctx, one, WINDOW)
+    away = np.hypot(*(dots.position_mm - (100.0, 60.0)).T)
+    rows = np.argsort(away)[:500]
+
+    def timed(call: Callable[[], None]) -> float:
+        def whole() -> None:
+            call()
+            ctx.finish()
+
+        return 1e3 * median_s(whole, 4 * repeats, warm=3)
+
+    part = timed(lambda: stage.renderer.update_dots(dots, rows))
+    places = timed(lambda: stage.renderer.set_positions(dots.position_mm, dots.radius_mm))
+    everything = timed(lambda: stage.renderer.set_dots(dots))
+    stage.release()
+    return [
+        Figure("upload of a stroke on 500 of 200,000 dots", part, "ms", 0.2),
+        Figure("upload of all positions, 200,000 dots", places, "ms"),
+        Figure("upload of everything, 200,000 dots", everything, "ms"),
+    ]
+
+
+def _gpu_frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
+    """Time a million deformed dots at 4k by the GPU's own clock; nothing on software GL."""
+    if is_software(ctx):
+        print("a million dots at 4k: no GPU here", file=sys.stderr)
+        return []
+    stage = _Stage(ctx, drawing(1_000_000, "rough"), UHD)
+    clock = ctx.query(time=True)
+    times = []
+    for _ in range(4 * repeats):
+        with clock:
+            stage.frame()
+        times.append(clock.elapsed / 1e6)
+    stage.release()
+    median = statistics.median(times[repeats:])
+    note = f"{ctx.info['GL_RENDERER']}, timer queries"
+    return [Figure("frame, 1,000,000 deformed dots, 3840 x 2160", median, "ms", 4.0, note=note)]
+
+
+def is_software(ctx: moderngl.Context) -> bool:
+    """Return whether the context's driver draws on the CPU."""
+    return any(name in ctx.info["GL_RENDERER"].lower() for name in ("llvmpipe", "softpipe", "swr"))
+
+
+def _outlines(repeats: int) -> list[Figure]:
+    round_ones, rough = drawing(100_000), drawing(100_000, "rough")
+    outlines = median_s(lambda: bezier_outlines(rough.dots, 24), repeats)
+    as_circles = median_s(lambda: b"".join(svg_chunks(round_ones)), repeats)
+    as_paths = median_s(lambda: b"".join(svg_chunks(rough)), repeats)
+    size = [len(b"".join(svg_chunks(one))) / 1e6 for one in (round_ones, rough)]
+    return [
+        Figure("outlines of 100,000 rough dots, 24 segments", outlines, "s", 0.3),
+        Figure("SVG of 100,000 round dots", as_circles, "s", note=f"{size[0]:.1f} MB"),
+        Figure("SVG of 100,000 rough dots", as_paths, "s", note=f"{size[1]:.1f} MB"),
+    ]
+
+
+def _pictures(repeats: int) -> list[Figure]:
+    results = []
+    for n, reach, stretch in ((100_000, 2.0, 1.0), (1_000_000, None, None)):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.png"
+            command = [sys.executable, "-c", _PICTURE, str(n), str(out)]
+            times = []
+            for _ in range(repeats):
+                start = time.perf_counter()
+                subprocess.run(command, check=True, capture_output=True)
+                times.append(time.perf_counter() - start)
+            note = f"{out.stat().st_size / 1e6:.1f} MB; dots made in the process, too"
+        name = f"PNG 3840 x 2400 of {n:,} dots, whole process"
+        results.append(Figure(name, statistics.median(times), "s", reach, stretch, note=note))
+    return results
+
+
+def main() -> None:
+    """Print a line for each figure."""
+    for figure in figures("--quick" in sys.argv):
+        promised = "" if figure.reach is None else f"{figure.reach:g}"
+        print(
+            f"{figure.name:52} {figure.value:9.3g} {figure.unit:3} {promised:5} "
+            f"{figure.verdict:8} {figure.note}"
+        )
+
+
+if __name__ == "__main__":
+    main()

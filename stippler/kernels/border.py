@@ -1,0 +1,196 @@
+"""Cells at the border: the edges near them, their outlines, integrals, and moves kept inside.
+
+An outline is a list of directed segments ``u0, v0, u1, v1`` relative to the dot, the cell on
+their left, those on the compartment's border first.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.clip import outline_piece
+from stippler.kernels.field import integrate_edge
+from stippler.kernels.jit import inline, inner
+from stippler.kernels.voronoi import cut_cell, reach2_of_cell
+
+F8 = NDArray[np.float64]
+I4 = NDArray[np.int32]
+
+
+@inline
+def gather_edges(
+    edge_start: I4,
+    edge_of_slot: I4,
+    ring: int,
+    ix: int,
+    iy: int,
+    nx: int,
+    ny: int,
+    first_cell: int,
+    near: I4,
+    seen: NDArray[np.int64],
+    stamp: int,
+) -> int:
+    """List the border edges in the grid cells up to `ring`, each once."""
+    n = 0
+    x0, x1 = max(ix - ring, 0), min(ix + ring, nx - 1)
+    for j in range(max(iy - ring, 0), min(iy + ring, ny - 1) + 1):
+        row = first_cell + j * nx
+        for s in range(edge_start[row + x0], edge_start[row + x1 + 1]):
+            e = edge_of_slot[s]
+            if seen[e] != stamp:
+                seen[e] = stamp
+                near[n] = e
+                n += 1
+    return n
+
+
+@inline
+def border_distance(edges: F8, near: I4, n_near: int, x: float, y: float) -> float:
+    """Return the distance of (x, y) from the nearest of the edges listed."""
+    best = math.inf
+    for s in range(n_near):
+        e = near[s]
+        au, av = x - edges[e, 0], y - edges[e, 1]
+        eu, ev = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
+        t = min(max((au * eu + av * ev) / (eu * eu + ev * ev), 0.0), 1.0)
+        au -= t * eu
+        av -= t * ev
+        best = min(best, au * au + av * av)
+    return math.sqrt(best) * (1.0 - 1e-9)
+
+
+@inner
+def outline_within(
+    cell: F8,
+    cell2: F8,
+    m: int,
+    x: float,
+    y: float,
+    ring: int,
+    ix: int,
+    iy: int,
+    nx: int,
+    ny: int,
+    gx: float,
+    gy: float,
+    h: float,
+    edges: F8,
+    next_edge: I4,
+    near: I4,
+    n_near: int,
+    seen: NDArray[np.int64],
+    stamp: int,
+    chains: F8,
+    trace: F8,
+    out: F8,
+) -> tuple[int, int, float]:
+    """Outline the dot's piece of the cell within the rings seen; return its reach, squared, too.
+
+    A piece that touches the outermost ring's walls reaches as far as they do, which tells the
+    caller to look further.
+    """
+    for r in range(6):
+        for k in range(m):
+            cell2[r, k] = cell[r, k]
+    n2 = m
+    if ix - ring > 0:
+        n2 = cut_cell(cell2, n2, -1.0, 0.0, x - (gx + (ix - ring) * h), -1.0)
+    if ix + ring < nx - 1:
+        n2 = cut_cell(cell2, n2, 1.0, 0.0, gx + (ix + ring + 1) * h - x, -1.0)
+    if iy - ring > 0:
+        n2 = cut_cell(cell2, n2, 0.0, -1.0, y - (gy + (iy - ring) * h), -1.0)
+    if iy + ring < ny - 1:
+        n2 = cut_cell(cell2, n2, 0.0, 1.0, gy + (iy + ring + 1) * h - y, -1.0)
+    reach2 = reach2_of_cell(cell2, n2)
+    n_border, n = outline_piece(
+        cell2,
+        n2,
+        x,
+        y,
+        edges,
+        next_edge,
+        near,
+        n_near,
+        stamp + 1,
+        seen,
+        chains,
+        trace,
+        out,
+        1e-24 * reach2,
+    )
+    best = 0.0
+    for s in range(n):
+        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
+        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
+    return n_border, n, best
+
+
+@inline
+def outline_of_cell(cell: F8, m: int, out: F8) -> int:
+    """Write the outline of a cell that no border cuts; return its segments."""
+    for k in range(m):
+        n = k + 1 if k + 1 < m else 0
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
+    return m
+
+
+@inline
+def sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
+    """Return area, both first moments and the second moment about the dot."""
+    area = mu = mv = second = 0.0
+    for s in range(n):
+        au, av, bu, bv = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
+        cross = au * bv - bu * av
+        area += cross
+        mu += cross * (au + bu)
+        mv += cross * (av + bv)
+        second += cross * (au * au + au * bu + bu * bu + av * av + av * bv + bv * bv)
+    return 0.5 * area, mu / 6.0, mv / 6.0, second / 12.0
+
+
+@inner
+def sum_field(
+    out: F8, n: int, x: float, y: float, mass: F8, moment: F8, frame: F8
+) -> tuple[float, float, float]:
+    """Return the field's mass over the outline and its first moments about the dot."""
+    ku, kv = 1.0 / frame[2], 1.0 / frame[3]
+    px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
+    total = mu = mv = 0.0
+    for s in range(n):
+        m, mx, my = integrate_edge(
+            mass, moment, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
+        )
+        total += m
+        mu += mx
+        mv += my
+    size = frame[2] * frame[3]
+    return total * size, mu * size * frame[2], mv * size * frame[3]
+
+
+@inline
+def free_share(out: F8, n_border: int, du: float, dv: float, margin: float) -> float:
+    """Return the share of the move (du, dv) that stays clear of the border segments.
+
+    1 if the straight way ends well inside; else half of the way to the first border met; 0 if
+    even that comes nearer to it than `margin`.
+    """
+    share = 1.0
+    for s in range(n_border):
+        au, av = out[s, 0], out[s, 1]
+        eu, ev = out[s, 2] - au, out[s, 3] - av
+        length = math.sqrt(eu * eu + ev * ev)
+        if length == 0.0:
+            continue
+        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
+        after = before + (eu * dv - ev * du) / length
+        if after >= margin or after >= before:
+            continue
+        t = max((before - margin) / (before - after), 0.0)
+        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
+        if -margin <= along <= length + margin:
+            share = min(share, 0.5 * t)
+    return share
