@@ -25,12 +25,8 @@ from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.sight import draw_view
-<<<<<<< HEAD
-from stippler.ui.panels.status import FrameRate, draw_status
-from stippler.ui.panels.tools import draw_tools
-=======
 from stippler.ui.panels.status import draw_status
->>>>>>> main
+from stippler.ui.panels.tools import draw_tools
 from stippler.ui.pointer import Pointer
 from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule

@@ -248,7 +248,6 @@ class Session:
         return self._export_request is not None
 
     @property
-<<<<<<< HEAD
     def relaxing(self) -> bool:
         """Whether the job that runs moves the drawing's own dots."""
         return self.busy and self.editing is not None and self.editing.in_run
@@ -257,11 +256,11 @@ class Session:
     def paintable(self) -> bool:
         """Whether the dots can be edited now: they are there, and no job makes new ones."""
         return self.editing is not None and (not self.busy or self.relaxing)
-=======
+
+    @property
     def steps_per_s(self) -> float:
         """Relaxation steps a second in the work that runs, or the last; 0 before any."""
         return self._steps.per_s
->>>>>>> main
 
     @property
     def n_dots(self) -> int:
@@ -296,7 +295,6 @@ class Session:
         self._end_run()
         known = self.reference if source == self.source else None
         plan, stipple = self.plan, self._stipple
-<<<<<<< HEAD
         self._page, self._asked, self.running_plan = None, source, plan
         first = work.READ if known is None else "first dots"
         self._run("running", first, lambda: stipple(source, plan, known))
@@ -304,15 +302,8 @@ class Session:
     def _run(self, phase: Phase, stage: str, job: Callable[[], Iterator[Work]]) -> None:
         self._request = self._worker.start(job)
         self.phase, self.stage, self.done, self.total = phase, stage, 0, 0
-        self.steps_per_s = 0.0
-        self._steps.clear()
-=======
-        self._request = self._worker.start(lambda: stipple(source, plan, known))
-        self._asked, self.running_plan, self.phase = source, plan, "running"
-        self.stage, self.done, self.total = work.READ if known is None else "first dots", 0, 0
         self._last = None
         self._steps = StepRate()
->>>>>>> main
 
     def _end_run(self) -> None:
         if self.editing is not None:
@@ -393,12 +384,9 @@ class Session:
         return work.frozen(drawing)
 
     def _report(self) -> None:
-<<<<<<< HEAD
+        """Say what has been drawn, and what it falls short of."""
         if self.source is None:
             return
-        if not self.n_dots:
-=======
-        """Say what has been drawn, and what it falls short of."""
         from stippler.stippling.stipple import notes_on
 
         self.messages.say(f"{self.n_dots:,} dots drawn")
@@ -406,5 +394,4 @@ class Session:
         if notes:
             self.messages.say("; ".join(notes), WARNING)
         elif not self.n_dots:
->>>>>>> main
             self.messages.say("the picture is all white: a drawing without dots", WARNING)
