@@ -219,8 +219,7 @@ class Editing:
         result = np.ascontiguousarray(position_mm, np.float64)
         if result.shape != run.after.shape:
             raise ValueError("the result is not one of this run")
-        rows = np.empty(len(run.ids), np.int64)
-        n = merge_positions(
+        n, furthest_mm = merge_positions(
             run.ids,
             result,
             self._store.row_of_id,
@@ -229,10 +228,9 @@ class Editing:
             self.dots.fixed,
             self.dots.position_mm,
             run.after,
-            rows,
         )
         self.revision += 1
-        self._index.update(rows[:n], self.dots.position_mm)
+        self._index.drift(furthest_mm)
         self._places_changed = True
         return n
 

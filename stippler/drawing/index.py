@@ -20,6 +20,7 @@ from stippler.kernels.dot_lists import (
 DOTS_PER_CELL = 2.0
 _MOST_CELLS = 4_000_000
 _SPARE = 1024
+_MOST_DRIFT = 1.0  # in cells; then it is cheaper to begin anew
 
 Positions = NDArray[np.float64]
 
@@ -55,7 +56,7 @@ class DotIndex:
         side = math.sqrt(width * height * DOTS_PER_CELL / max(n, 64))
         side = max(side, math.sqrt(width * height / _MOST_CELLS), max(width, height) / 65536)
         columns, rows = math.ceil(width / side), math.ceil(height / side)
-        self._frame = np.array([0.0, 0.0, 1.0 / side, columns, rows])
+        self._frame = np.array([0.0, 0.0, 1.0 / side, columns, rows, 0.0])
         self._head = np.full(columns * rows, -1, np.int32)
         if n > len(self._links) or 4 * n + _SPARE < len(self._links):
             self._links = np.empty((n + n // 4 + _SPARE, 3), np.int32)
@@ -82,6 +83,12 @@ class DotIndex:
             more[: len(self._links)] = self._links
             self._links = more
         relink(rows, position_mm, self._frame, self._head, self._links)
+
+    def drift(self, most_mm: float) -> None:
+        """Take note that any dots may have moved, each by so much at most."""
+        self._frame[5] += most_mm
+        if self._frame[5] * self._frame[2] > _MOST_DRIFT:
+            self._stale = True
 
     def in_box(self, box: tuple[float, float, float, float], position_mm: Positions) -> Rows:
         """Return the rows of the dots in a closed box x0, y0, x1, y1; sorted."""

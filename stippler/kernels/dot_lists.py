@@ -1,8 +1,9 @@
 """A grid of linked lists of dots: one dot moves, comes or goes in constant time.
 
 `head` holds the first row of each cell, `links` (rows, 3) the next and previous row and the cell,
--1 where there is none. `frame` is ``x0, y0, 1 / side, columns, rows`` of the grid; dots outside it
-are kept in its border cells.
+-1 where there is none. `frame` is ``x0, y0, 1 / side, columns, rows, slack`` of the grid; dots
+outside it are kept in its border cells. A dot may have moved by up to `slack` since it was put into
+its cell: queries look that much further, and go by where dots are.
 """
 
 from __future__ import annotations
@@ -70,14 +71,12 @@ def rows_in_box(
     x0: float, y0: float, x1: float, y1: float, xy: F8, frame: F8, head: I4, links: I4, out: I8
 ) -> int:
     """Write the rows of the dots in a closed box; return how many, also where `out` is full."""
-    n = 0
-    i0, i1 = (
-        _cell_of(x0, frame[0], frame[2], frame[3]),
-        _cell_of(x1, frame[0], frame[2], frame[3]),
-    )
-    for j in range(
-        _cell_of(y0, frame[1], frame[2], frame[4]), _cell_of(y1, frame[1], frame[2], frame[4]) + 1
-    ):
+    n, slack = 0, frame[5]
+    i0 = _cell_of(x0 - slack, frame[0], frame[2], frame[3])
+    i1 = _cell_of(x1 + slack, frame[0], frame[2], frame[3])
+    j0 = _cell_of(y0 - slack, frame[1], frame[2], frame[4])
+    j1 = _cell_of(y1 + slack, frame[1], frame[2], frame[4])
+    for j in range(j0, j1 + 1):
         for cell in range(j * int(frame[3]) + i0, j * int(frame[3]) + i1 + 1):
             row = head[cell]
             while row >= 0:
@@ -93,14 +92,11 @@ def rows_in_box(
 def nearest_row(x: float, y: float, reach: float, xy: F8, frame: F8, head: I4, links: I4) -> int:
     """Return the row of the nearest dot within a reach, the lowest of equals; -1 if none."""
     best, best_d2 = -1, reach * reach
-    i0, i1 = (
-        _cell_of(x - reach, frame[0], frame[2], frame[3]),
-        _cell_of(x + reach, frame[0], frame[2], frame[3]),
-    )
-    j0, j1 = (
-        _cell_of(y - reach, frame[1], frame[2], frame[4]),
-        _cell_of(y + reach, frame[1], frame[2], frame[4]),
-    )
+    far = reach + frame[5]
+    i0 = _cell_of(x - far, frame[0], frame[2], frame[3])
+    i1 = _cell_of(x + far, frame[0], frame[2], frame[3])
+    j0 = _cell_of(y - far, frame[1], frame[2], frame[4])
+    j1 = _cell_of(y + far, frame[1], frame[2], frame[4])
     for j in range(j0, j1 + 1):
         for i in range(i0, i1 + 1):
             row = head[j * int(frame[3]) + i]
@@ -165,7 +161,7 @@ def nearest_distances(
         best = reach * reach
         for ring in range(most + 1):
             best = _nearest_d2_in_ring(rows[k], ring, ix, iy, best, xy, frame, head, links)
-            seen = to_wall + ring * side
+            seen = to_wall + ring * side - frame[5]
             if seen > 0.0 and best <= seen * seen:
                 break
         out[k] = math.sqrt(best)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,20 +24,21 @@ def merge_positions(
     fixed: NDArray[np.bool_],
     position: F8,
     after: F8,
-    rows: I8,
-) -> int:
+) -> tuple[int, float]:
     """Move the free dots that are there and have not been edited since `base`.
 
-    Writes their places to `position` (by row) and `after` (by the order of `ids`), and their rows
-    to `rows`; returns how many there are.
+    Writes their places to `position` (by row) and `after` (by the order of `ids`); returns how
+    many there are, and how far the one went that moved most.
     """
     n = 0
+    furthest2 = 0.0
     for k in range(len(ids)):
         row = row_of_id[ids[k]]
         if row < 0 or edited[ids[k]] > base or fixed[row]:
             continue
+        dx, dy = result[k, 0] - position[row, 0], result[k, 1] - position[row, 1]
+        furthest2 = max(furthest2, dx * dx + dy * dy)
         position[row, 0] = after[k, 0] = result[k, 0]
         position[row, 1] = after[k, 1] = result[k, 1]
-        rows[n] = row
         n += 1
-    return n
+    return n, math.sqrt(furthest2)

@@ -283,9 +283,19 @@ def test_strokes_have_to_begin_and_end():
         editing.undo()
 
 
-def test_nearest_and_apart_agree_with_brute_force():
+@pytest.mark.parametrize("n_results", [0, 1, 3, 30])
+def test_nearest_and_apart_agree_with_brute_force(n_results):
+    """After small moves of all dots, too, which the index only takes note of."""
     editing = Editing(some_drawing(400))
     rng = np.random.default_rng(5)
+    editing.begin_run("relax")
+    for _ in range(n_results):
+        moved = editing.dots.position_mm + rng.uniform(-0.1, 0.1, (400, 2))
+        editing.merge(np.clip(moved, 0, (20, 10)))
+    box = (3.0, 2.0, 11.0, 7.5)
+    x, y = editing.dots.position_mm.T
+    inside = (x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])
+    assert np.array_equal(editing.in_box(box), np.flatnonzero(inside))
     points = rng.uniform(-1, 21, (200, 2)) * (1, 0.5)
     position = editing.dots.position_mm
     distance = np.hypot(*(points[:, None] - position[None]).transpose(2, 0, 1))
