@@ -1,4 +1,4 @@
-// One Lloyd step by d3-delaunay, median of nine; n uniform random dots in the unit square.
+// One Lloyd step by d3-delaunay, least of nine; n uniform random dots in the unit square.
 import {Delaunay} from "d3-delaunay";
 const n = Number(process.argv[2]);
 const points = Float64Array.from({length: 2 * n}, Math.random);
@@ -23,4 +23,4 @@ for (let run = 0; run < 9; ++run) {
   times.push(performance.now() - start);
 }
 times.sort((a, b) => a - b);
-console.log(times[4]);
+console.log(times[0]);

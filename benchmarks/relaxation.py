@@ -1,7 +1,8 @@
 """Relaxation beside its peers: ``python -m benchmarks.relaxation [--quick]``.
 
-All figures come from one run on one machine, so ratios can be compared where times can't. Steps
-are timed alone: dots are random and uniform unless a name says otherwise, seeds are fixed.
+All figures come from one run on one machine, so ratios can be compared where times can't. A time
+is the least of several runs, ours and the peers' alike, as other work on the machine only ever
+adds. Dots are random and uniform unless a name says otherwise; seeds are fixed.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 from shapely.geometry import Point, Polygon, box
 
-from benchmarks.figures import Figure, median_s
+from benchmarks.figures import Figure
 from stippler.stippling.relax import DensityField, Relaxation
 from stippler.stippling.relax_local import LocalRelaxation
 
@@ -37,7 +38,7 @@ _D3 = Path(__file__).with_name("d3_delaunay.mjs")
 
 def figures(quick: bool = False) -> list[Figure]:
     """Measure everything; `quick` leaves out what takes long."""
-    repeats = 3 if quick else 9
+    repeats = 5 if quick else 15
     found = _square(repeats) + _shapes(repeats) + _weighted(repeats) + _uneven(repeats)
     found += _sizes(quick) + _brush(repeats) + _run_from_halftone(repeats)
     found += _beside_a_ticking_thread(quick) + _compile_time(quick)
@@ -49,8 +50,20 @@ def dots(n: int, seed: int = 1) -> Points:
     return np.random.default_rng(seed).random((n, 2))
 
 
+def least_s(call: Callable[[], object], repeats: int, warm: int = 1) -> float:
+    """Return the least time of a call."""
+    for _ in range(warm):
+        call()
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
 def first_step_s(make: Callable[[], Relaxation], repeats: int) -> float:
-    """Return the median time of an engine's first step."""
+    """Return the time of an engine's first step."""
     make().step()
     times = []
     for _ in range(repeats):
@@ -58,13 +71,13 @@ def first_step_s(make: Callable[[], Relaxation], repeats: int) -> float:
         start = time.perf_counter()
         engine.step()
         times.append(time.perf_counter() - start)
-    return float(np.median(times))
+    return min(times)
 
 
 def later_step_s(engine: Relaxation, after: int, repeats: int) -> float:
-    """Return the median time of a step, of those that follow `after` steps."""
+    """Return the time of a step that follows `after` others."""
     engine.run(after)
-    return median_s(engine.step, repeats, warm=0)
+    return least_s(engine.step, repeats, warm=0)
 
 
 def _square(repeats: int) -> list[Figure]:
@@ -81,7 +94,7 @@ def _square(repeats: int) -> list[Figure]:
     peers = {"scipy Delaunay + numpy": lambda: scipy_step(xy), "shapely": lambda: shapely_step(xy)}
     promised = {"scipy Delaunay + numpy": 20.0}
     for name, step in peers.items():
-        seconds = median_s(step, max(repeats // 3, 1), warm=0)
+        seconds = least_s(step, max(repeats // 3, 1), warm=0)
         out.append(Figure(f"50k, {name}", seconds * 1e3, "ms", note="peer"))
         out.append(_times_faster(f"50k, first step against {name}", seconds, first,
                                  promised.get(name)))  # fmt: skip
@@ -122,7 +135,7 @@ def points_in(polygon: Polygon, n: int, seed: int = 1) -> Points:
 def hexagons() -> list[Polygon]:
     """Return 500 compartments side by side."""
     corners = np.array([(1, 2), (10, 1), (19, 2), (18, 18), (10, 19), (2, 18)]) / 20
-    return [Polygon(corners + [i, j]) for i in range(25) for j in range(20)]
+    return [Polygon(corners + np.array([i, j])) for i in range(25) for j in range(20)]
 
 
 def _shapes(repeats: int) -> list[Figure]:
@@ -184,7 +197,7 @@ def _brush(repeats: int) -> list[Figure]:
     xy = dots(200_000) * side
     brush = LocalRelaxation(xy, box(0, 0, side, side))
     chosen = brush.find(side / 2, side / 2, (500 / np.pi) ** 0.5)
-    seconds = median_s(lambda: brush.relax(chosen), 20 * repeats, warm=5)
+    seconds = least_s(lambda: brush.relax(chosen), 20 * repeats, warm=5)
     note = f"{len(chosen)} dots"
     return [Figure("500 dots under a brush in 200k", seconds * 1e3, "ms", 1.0, 0.4, note=note)]
 
@@ -201,7 +214,7 @@ def _run_from_halftone(repeats: int) -> list[Figure]:
         engine.run(20)
         times.append(time.perf_counter() - start)
     note = "start: jittered rows"
-    value = float(np.median(times)) * 1e3
+    value = min(times) * 1e3
     return [Figure("20 iterations of 50k from an even start", value, "ms", 200, 120, note=note)]
 
 
@@ -232,12 +245,12 @@ _LOAD = """
 import time, numpy as np
 from shapely.geometry import Point, box
 import stippler.stippling.relax as r, stippler.stippling.relax_local as l
-start = time.perf_counter()
+start = time.process_time()
 round_, xy = Point(0, 0).buffer(1), np.random.default_rng(0).uniform(-.5, .5, (3000, 2))
 field = r.DensityField(np.ones((9, 9)), 1.0, (-4, -4))
 r.Relaxation(xy, round_, density=field).run(8)
 l.LocalRelaxation(xy, round_, density=field).relax([0, 1])
-print(time.perf_counter() - start)
+print(time.process_time() - start)
 """
 
 
@@ -249,7 +262,9 @@ def _compile_time(quick: bool) -> list[Figure]:
                 [sys.executable, "-c", _LOAD], capture_output=True, text=True, check=True,
                 env={**os.environ, "STIPPLER_CACHE_DIR": folder},
             )  # fmt: skip
-            out.append(Figure(f"relaxation's kernels, {name}", float(run.stdout), "s", promised))
+            out.append(
+                Figure(f"relaxation's kernels, {name}", float(run.stdout), "s of CPU", promised)
+            )
     return out
 
 
@@ -291,7 +306,8 @@ def shapely_step(xy: Points) -> Points:
     x0, y0, x1, y1 = shapely.bounds(cells).T
     out = (x0 < 0) | (y0 < 0) | (x1 > 1) | (y1 > 1)
     cells[out] = shapely.intersection(cells[out], square)
-    return shapely.get_coordinates(shapely.centroid(cells))
+    centroids: Points = shapely.get_coordinates(shapely.centroid(cells))
+    return centroids
 
 
 def d3_step_s(n: int) -> float | None:

@@ -5,6 +5,7 @@ python -m benchmarks.rendering [--quick]
 
 from __future__ import annotations
 
+import resource
 import statistics
 import subprocess
 import sys
@@ -33,6 +34,8 @@ UHD = (3840, 2160)
 
 _PICTURE = """
 import sys
+from stippler.kernels.lean import skip_blas
+skip_blas()  # as the command line does
 from benchmarks.rendering import drawing
 from stippler.export import save
 save(drawing(int(sys.argv[1])), sys.argv[2], dpi=3840 / 200 * 25.4)
@@ -95,15 +98,27 @@ def _frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
     for kind in ("round", "smooth", "rough"):
         stage = _Stage(ctx, drawing(100_000, kind), WINDOW)
         wall = 1e3 * median_s(stage.frame, repeats, warm=2)
+        cpu = 1e3 * _cpu_s(stage.frame, repeats)
         reach = 60.0 if kind == "round" else None
+        note = f"{name}; {cpu:.0f} ms of CPU time"
         label = {"round": "round", "smooth": "elongated", "rough": "rough, elongated"}[kind]
         results.append(
-            Figure(f"frame, 100,000 {label} dots, 1280 x 800", wall, "ms", reach, note=name)
+            Figure(f"frame, 100,000 {label} dots, 1280 x 800", wall, "ms", reach, note=note)
         )
         if kind == "round":
             results += [_preview_cost(stage, repeats), _zoomed(stage, repeats)]
         stage.release()
     return results
+
+
+def _cpu_s(call: Callable[[], None], repeats: int) -> float:
+    """Return the median CPU time of a call, of all cores: other programs change it little."""
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        call()
+        times.append(time.process_time() - start)
+    return statistics.median(times)
 
 
 def _zoomed(stage: _Stage, repeats: int) -> Figure:
@@ -192,14 +207,21 @@ def _pictures(repeats: int) -> list[Figure]:
             out = Path(folder) / "out.png"
             command = [sys.executable, "-c", _PICTURE, str(n), str(out)]
             times = []
+            before = _cpu_of_children_s()
             for _ in range(repeats):
                 start = time.perf_counter()
                 subprocess.run(command, check=True, capture_output=True)
                 times.append(time.perf_counter() - start)
-            note = f"{out.stat().st_size / 1e6:.1f} MB; dots made in the process, too"
+            cpu = (_cpu_of_children_s() - before) / repeats
+            note = f"{out.stat().st_size / 1e6:.1f} MB; {cpu:.1f} s of CPU time"
         name = f"PNG 3840 x 2400 of {n:,} dots, whole process"
         results.append(Figure(name, statistics.median(times), "s", reach, stretch, note=note))
     return results
+
+
+def _cpu_of_children_s() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def main() -> None:

@@ -67,7 +67,7 @@ void main() {
         + 0.5;
 #endif
 #ifdef POINTS
-    gl_PointSize = 2.0 * max(half_size.x, half_size.y) + 0.25;
+    gl_PointSize = 2.0 * max(half_size.x, half_size.y) + 0.0625;
     if (a_dot.z > u_largest_mm) center = vec2(-1e6);
 #else
     center += (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * half_size;

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import inline, inner
+from stippler.kernels.jit import ZERO, inline, inner
 
 F8 = NDArray[np.float64]
 I4 = NDArray[np.int32]
@@ -225,7 +225,7 @@ def _put_chains_and_rim(
 
     Border segments come first: they are what a moving dot must not cross.
     """
-    n = np.int64(0)
+    n = ZERO
     for i in range(n_chains):
         for s in range(int(chains[i, _FIRST]), int(chains[i, _END])):
             n = _put(out, n, trace[s, 0], trace[s, 1], trace[s, 2], trace[s, 3])
@@ -330,7 +330,7 @@ def outline_piece(
     n_border, n : int
         ``out[:n_border]`` lies on the border, the rest up to n on the cell's rim.
     """
-    n_chains = n_trace = np.int64(0)
+    n_chains = n_trace = ZERO
     n_started_inside = 0
     for i in range(n_near):
         e = near[i]

@@ -42,11 +42,15 @@ def _pack_shape(row, elongation, angle, roughness, seed, flags):
 
 
 @kernel
-def _pack(start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, flags, place, shape):  # fmt: skip # noqa: E501
+def _pack(
+    start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, fixed,
+    selected, place, shape,
+):  # fmt: skip
     for k in range(start, stop):
         i = rows[k]
+        flags = (FIXED if fixed[i] else 0) | (SELECTED if selected[i] else 0)
         _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
-        _pack_shape(shape[k], elongation[i], angle[i], roughness[i], seed[i], flags[i])
+        _pack_shape(shape[k], elongation[i], angle[i], roughness[i], seed[i], flags)
 
 
 @kernel
@@ -115,14 +119,14 @@ def nearby_order(
 def pack(
     dots: Any,
     origin_mm: tuple[float, float],
-    flags: NDArray[np.uint8],
+    selected: NDArray[np.bool_],
     rows: NDArray[np.int64],
     out: NDArray[np.uint32],
 ) -> None:
-    """Pack the given rows of dots into consecutive rows of `out`; `flags` are of all dots."""
+    """Pack the given rows of dots into consecutive rows of `out`; `selected` is of all dots."""
     run_ranges(
         _pack, len(out), rows, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
-        dots.angle_rad, dots.roughness, dots.seed, flags, out.view(np.float32), out,
+        dots.angle_rad, dots.roughness, dots.seed, dots.fixed, selected, out.view(np.float32), out,
         grain=_GRAIN,
     )  # fmt: skip
 

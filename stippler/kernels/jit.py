@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+import numpy as np
+
 from stippler.kernels.cache import module_folder
 from stippler.kernels.lean import importing_numba
 
@@ -23,6 +25,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba.core.config  # its names appear at run time
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+_INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+ZERO: Any = np.int64(0)
+"""Where a kernel counts from: after a plain 0 numba compiles what it calls once more for it."""
 
 
 def kernel(function: Function) -> Function:
@@ -44,7 +50,5 @@ def inline(function: Function) -> Function:
 
 def inner(function: Function) -> Function:
     """Compile a function that only kernels call, without the wrappers that Python would need."""
-    compiled: Function = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)(
-        function
-    )
+    compiled: Function = numba.njit(**_INNER)(function)
     return compiled

@@ -23,7 +23,7 @@ from stippler.kernels.border import (
     sum_field,
 )
 from stippler.kernels.grid import column_of, distance2_to_span, ring_span, seen_distance
-from stippler.kernels.jit import inline, inner, kernel
+from stippler.kernels.jit import ZERO, inline, inner, kernel
 from stippler.kernels.simd import (
     BUFFER,
     get,
@@ -208,7 +208,7 @@ def relax_dots(
     chains = np.empty((room, 5))
     trace = np.empty((room, 4))
     out = np.empty((2 * room + 3 * corner_cap + 8, 4))
-    stamp = np.int64(0)
+    stamp = ZERO
     for w in range(start, stop):
         i = w if is_all else which[w]
         x, y = xs[i], ys[i]
@@ -228,11 +228,11 @@ def relax_dots(
             free = max(clear[first_cell + iy * nx + ix] - 1, 0) * h
         is_packed = True
         is_outlined = False
-        n_border = n = np.int64(0)
+        n_border = n = ZERO
         m = start_lanes(U, V, N, x0, y0, x1, y1)
-        ring = np.int64(1)  # numba compiles callees anew for a literal
+        ring = ZERO + 1
         while True:
-            reach2, n_near = 0.0, np.int64(0)
+            reach2, n_near = 0.0, ZERO
             if is_packed:
                 for s in range(6 if ring == 1 else 4 * ring):
                     is_first = ring == 1 and s < 3
@@ -268,7 +268,7 @@ def relax_dots(
                 if m == OVERFLOW:
                     is_packed = False
                     m = start_cell(cell, x0, y0, x1, y1)
-                    ring = np.int64(1)
+                    ring = ZERO + 1
                     continue
                 reach2 = reach2_of(U, V, m)
             else:
@@ -345,7 +345,7 @@ def relax_dots(
             if not is_outlined:
                 if is_packed:
                     unpack_lanes(U, V, N, m, xs, ys, x, y, x0, y0, x1, y1, cell)
-                n_border, n = np.int64(0), outline_of_cell(cell, m, out)
+                n_border, n = ZERO, outline_of_cell(cell, m, out)
             area, du, dv, second = sum_area(out, n)
             if len(mass):
                 area, du, dv = sum_field(out, n, x, y, mass, moment, frame)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.border import sum_field
-from stippler.kernels.jit import inner, kernel
+from stippler.kernels.jit import ZERO, inner, kernel
 from stippler.kernels.relaxation import INNER
 from stippler.kernels.simd import (
     BUFFER,
@@ -68,7 +68,7 @@ def verify_stars(
         put(V, k, 0.0)
     out = np.empty((LANES, 4))
     for i in range(start, stop):
-        m = np.int64(n_star[i])
+        m = ZERO + n_star[i]
         todo[i] = 1
         if kind_of_cell[i] != INNER or m < 3 or m + 2 > LANES:
             continue

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.jit import inline, inner
+from stippler.kernels.jit import ZERO, inline, inner
 from stippler.kernels.simd import (
     FRONT,
     LANES,
@@ -57,7 +57,7 @@ def start_lanes(U: Any, V: Any, N: Any, x0: float, y0: float, x1: float, y1: flo
         put(V, k + 3, y1)
     for k in range(8):
         put(N, k, np.int32(WALL - (k & 3)))
-    return int(np.int64(4))
+    return int(ZERO + 4)
 
 
 @inner
@@ -164,7 +164,7 @@ def start_cell(cell: F8, x0: float, y0: float, x1: float, y1: float) -> int:
     cell[2, 3], cell[3, 3], cell[4, 3] = -1.0, 0.0, -x0
     for k in range(4):
         cell[5, k] = WALL - k
-    return int(np.int64(4))
+    return int(ZERO + 4)
 
 
 @inline

@@ -13,7 +13,7 @@ from stippler.kernels.overlap import shares_of_union
 Origin = tuple[float, float]
 
 _STRIDE = gpu_dots.N_WORDS * gpu_dots.WORD_BYTES
-_GAP = 48  # rows that stand still are uploaded too where that saves a call
+_GAP = 256  # rows that stand still are uploaded too where that saves a call
 
 
 class DotBuffer:
@@ -51,10 +51,9 @@ class DotBuffer:
         """Upload all dots; return whether the GL buffer is another one now."""
         grown = self._resize(len(dots))
         self._order(dots.position_mm, origin_mm)
-        flags = _flags(dots.fixed, selected)
-        gpu_dots.pack(dots, origin_mm, flags, self._row_of_slot, self.rows)
+        gpu_dots.pack(dots, origin_mm, selected, self._row_of_slot, self.rows)
         self._forget()
-        self.has_flags = bool(flags.any())
+        self.has_flags = bool(dots.fixed.any() or selected.any())
         self._knows_shares = False
         self._learn(dots.radius_mm, dots.elongation, dots.roughness)
         self._upload()
@@ -100,9 +99,8 @@ class DotBuffer:
         slots = np.sort(self._slot_of_row[rows])
         changed = self._row_of_slot[slots]
         fresh = gpu_dots.words(len(slots))
-        flags = _flags(dots.fixed, selected)
-        gpu_dots.pack(dots, origin_mm, flags, changed, fresh)
-        self.has_flags = self.has_flags or bool(flags[rows].any())
+        gpu_dots.pack(dots, origin_mm, selected, changed, fresh)
+        self.has_flags = self.has_flags or bool((dots.fixed[rows] | selected[rows]).any())
         self._words[slots] = fresh
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
         self._upload_runs(slots)
@@ -111,7 +109,8 @@ class DotBuffer:
     def find_shares(self) -> None:
         """Find how much each dot adds to the union of all; only after a full upload.
 
-        Dots that a brush or a worker moves keep the share they had, so that drawing never waits.
+        Until the next one dots that a worker moves keep their shares, and those that a brush
+        changes count whole, so that drawing never waits.
         """
         if self._knows_shares:
             return
@@ -178,7 +177,3 @@ class DotBuffer:
     def release(self) -> None:
         """Free the GL buffer."""
         self.gl.release()
-
-
-def _flags(fixed: NDArray[np.bool_], selected: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    return fixed * np.uint8(gpu_dots.FIXED) | selected * np.uint8(gpu_dots.SELECTED)

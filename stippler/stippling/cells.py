@@ -73,6 +73,7 @@ class Cells:
         self._kind_of_cell = np.zeros(n, np.uint8)
         self._free_of_dot = np.zeros(n)
         self._has_stars = False
+        self.n_failed = n  # stars of the step before that did not hold
 
     @property
     def keeps_stars(self) -> bool:
@@ -93,7 +94,7 @@ class Cells:
         done = self.keeps_stars and self._step_from_stars(new, cancel)
         if not done:
             self._sort()
-            self._has_stars = False
+            self._has_stars, self.n_failed = False, self.n
             whole = np.arange(0, dtype=np.int32)
             done = self._relax(whole, True, new, cancel=cancel)
             self._has_stars = done
@@ -162,7 +163,8 @@ class Cells:
             grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
-        if len(which) > MOST_TODO * self.n:
+        self.n_failed = len(which)
+        if self.n_failed > MOST_TODO * self.n:
             return False
         suspect = np.zeros(self.n, np.uint8)
         settled = np.zeros(self.n, np.bool_)

@@ -128,6 +128,11 @@ class Relaxation:
     def __len__(self) -> int:
         return self._cells.n
 
+    @property
+    def n_failed(self) -> int:
+        """How many cells the last step could not carry over from the one before."""
+        return self._cells.n_failed
+
     def step(self, cancel: Cancel = None) -> StepReport:
         """Move every free dot once.
 
@@ -229,13 +234,17 @@ class Relaxation:
         self, xy: NDArray[np.float64], compartment_of_dot: NDArray[np.int32]
     ) -> None:
         """Move dots off dots that were given before them at the same place, by very little."""
-        keys = np.column_stack([compartment_of_dot, xy])
-        _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        if len(first) == len(xy):
+        x = np.sort(xy[:, 0])
+        if (x[1:] > x[:-1]).all():
             return
-        group = group.reshape(-1)
-        for g in np.flatnonzero(np.bincount(group) > 1):
-            rows = np.flatnonzero(group == g)
+        order = np.lexsort((xy[:, 1], xy[:, 0], compartment_of_dot))  # stable: as given in groups
+        same = (xy[order[1:]] == xy[order[:-1]]).all(axis=1)
+        same &= compartment_of_dot[order[1:]] == compartment_of_dot[order[:-1]]
+        group = np.concatenate([[0], np.cumsum(~same)])
+        sizes = np.bincount(group)
+        ends = np.cumsum(sizes)
+        for g in np.flatnonzero(sizes > 1):
+            rows = order[ends[g] - sizes[g] : ends[g]]
             c = compartment_of_dot[rows[0]]
             area = self._parts.area[c]
             spacing = math.sqrt(area / np.count_nonzero(compartment_of_dot == c))

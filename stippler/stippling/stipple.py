@@ -163,16 +163,16 @@ def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.fl
 def _relax(
     sheet: Sheet, plan: Plan, points: NDArray[np.float64]
 ) -> Iterator[tuple[NDArray[np.float64], float]]:
-    """Run Lloyd steps; weighted, by the square of the density, since dots settle at its root."""
+    """Run Lloyd steps, weighted by the square of the density, since dots settle at its root.
+
+    The paper's form weighs all ink alike; white weighs nothing in either, and draws no dots.
+    """
     from stippler.stippling.relax import DensityField, Relaxation
 
     outline = sheet.outline_mm()
-    field = None
-    if plan.weighted:
-        density = sheet.density()
-        density /= density.max()
-        origin = (float(outline[0, 0]), float(outline[0, 1]))
-        field = DensityField(np.square(density), sheet.pixel_mm, origin)
+    density = sheet.density()
+    weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
+    field = DensityField(weight, sheet.pixel_mm, (float(outline[0, 0]), float(outline[0, 1])))
     at = np.clip(points * sheet.pixel_mm, outline[0], outline[2])
     engine = Relaxation(at, outline, density=field)
     for _ in range(plan.iterations):
