@@ -64,10 +64,6 @@ class Tip:
         rest = np.clip((1.0 - level) / (1.0 - self.hardness), 0.0, 1.0)
         return np.asarray(rest * rest * (3.0 - 2.0 * rest))
 
-    def covers(self, offset_mm: Points, radius_mm: float) -> NDArray[np.bool_]:
-        """Return which offsets lie within the outline."""
-        return np.asarray(self._level(self._turned_back(offset_mm) / radius_mm) <= 1.0)
-
     def outline(self, radius_mm: float, n: int = 48) -> Points:
         """Return points along the outline, about the middle."""
         if self.shape == "polygon":
