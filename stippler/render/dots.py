@@ -21,7 +21,7 @@ from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
-_ALONE_PX = 6.0  # dots of this radius need not know of one another
+_ALONE_PX = 4.0  # dots of this radius need not know of one another
 _NOT_OF_ROUND = ("u_form", "u_turn")
 _MODES = {"all": 1, "selected": 2, "tip": 3}
 

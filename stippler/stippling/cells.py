@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,10 +94,8 @@ class Cells:
         new = np.zeros(self.n + SCAN), np.zeros(self.n + SCAN), np.empty(self.n)
         done = self.keeps_stars and self._step_from_stars(new, cancel)
         if not done:
-            self._sort()
             self._has_stars, self.n_failed = False, self.n
-            whole = np.arange(0, dtype=np.int32)
-            done = self._relax(whole, True, new, cancel=cancel)
+            done = self._sort(cancel=cancel) and self._relax(_NO_ROWS, True, new, cancel=cancel)
             self._has_stars = done
         if not done:
             return None
@@ -152,8 +151,9 @@ class Cells:
 
     def _step_from_stars(self, new: tuple[Floats, Floats, Floats], cancel: Question) -> bool:
         """Move dots by verified stars; False if that is not worth it now, or cancelled."""
-        if self._slack > SLACK * float(self.grid.real[:, 2].min()):
-            self._sort(True)
+        has_run = self._slack > SLACK * float(self.grid.real[:, 2].min())
+        if has_run and not self._sort(True, cancel):
+            return False
         todo = np.empty(self.n, np.uint8)
         grid = self.grid
         done = run_ranges(
@@ -177,29 +177,35 @@ class Cells:
             which = rows[todo[rows] != 0]
         return done
 
-    def _sort(self, with_stars: bool = False) -> None:
-        """Bring the dots into the order of the grid."""
+    def _sort(self, with_stars: bool = False, cancel: Question = None) -> bool:
+        """Bring the dots into the order of the grid; False, and nothing done, if cancelled."""
         if self._slack == 0.0:
-            return
+            return True
         n = self.n
         cell_of_dot, order = np.empty(n, np.int32), np.empty(n, np.int32)
+        cell_start = np.empty_like(self._cell_start)
         run_ranges(
             find_grid_cells, n, self.xs, self.ys, self.compartment_of_dot, self.grid.real,
             self.grid.whole, cell_of_dot, grain=GRAIN,
         )  # fmt: skip
-        sort_by_grid_cell(cell_of_dot, self._cell_start, order)
-        for name in ("fixed", "compartment_of_dot", "order"):
-            setattr(self, name, getattr(self, name)[order])
+        sort_by_grid_cell(cell_of_dot, cell_start, order)
+        names = ["fixed", "compartment_of_dot", "order"]
+        sorted_rows: dict[str, Any] = {"_cell_start": cell_start}
+        if with_stars:
+            names += ["_n_star", "_kind_of_cell", "_free_of_dot"]
+            new_row = np.empty(n, np.int32)
+            new_row[order] = np.arange(n, dtype=np.int32)
+            star = sorted_rows["_star"] = np.empty_like(self._star)
+            args = (renumber_stars, n, order, new_row, self._star, star)
+            if not run_ranges(*args, grain=GRAIN, cancel=cancel):
+                return False
+        for name in names:
+            if cancel is not None and cancel():
+                return False
+            sorted_rows[name] = getattr(self, name)[order]
+        for name, rows in sorted_rows.items():
+            setattr(self, name, rows)
         self.xs[:n], self.ys[:n] = self.xs[order], self.ys[order]
         self._slack = 0.0
-        if not with_stars:
-            self._has_stars = False
-            return
-        new_row = np.empty(n, np.int32)
-        new_row[order] = np.arange(n, dtype=np.int32)
-        old = self._star
-        self._star = np.empty_like(old)
-        run_ranges(renumber_stars, n, order, new_row, old, self._star, grain=GRAIN)
-        self._n_star = self._n_star[order]
-        self._kind_of_cell = self._kind_of_cell[order]
-        self._free_of_dot = self._free_of_dot[order]
+        self._has_stars = self._has_stars and with_stars
+        return True

@@ -74,6 +74,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         return Progress(stage, done, total, *shown, movement_mm)
 
     points = np.empty((0, 2))
+    yield snapshot("first dots", 0, 1000, points)  # nothing yet, but a chance to cancel
     for share, points in _first_dots(sheet, plan):
         yield snapshot("first dots", round(1000 * share), 1000, points)
     if len(points) and plan.iterations:
@@ -146,6 +147,7 @@ def _sheet(reference: Reference, plan: Plan) -> Sheet:
 def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Yield the share done and the dots so far, in pixels from the page's corner."""
     density = sheet.density()
+    yield 0.0, np.empty((0, 2))
     if plan.first_dots == "pulse-density":
         halftone = pulses(density, plan.growth, start=plan.start, seed=plan.seed)
         for share, first in halftone:

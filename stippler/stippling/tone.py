@@ -33,10 +33,10 @@ _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
 for relaxed dots of locally equal size."""
 
 _BINS = 1024
-_DOTS_AT_ONCE = 12_000
+_DOTS_AT_ONCE = 8_000
 _ROUNDS = 4  # of passing on ink that a dot cannot lay down
 _ENOUGH = 2e-4  # share of all ink that need not be passed on
-_REACH = 12.0  # mean spacings; a cell reaches no farther from its dot to any side
+_REACH = 7.0  # mean spacings; a cell reaches no farther from its dot to any side
 
 
 def ink_for(darkness: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -208,14 +208,16 @@ def solve_radii(
         yield 1.0, result
         return
     low, high = rule.radius_min, rule.radius_max
-    order, cell_start, frame = _grid(points, darkness.shape)
+    order, cell_start, frame = _grid(points, darkness)
     cells = _Cells(n)
     for share in cells.build(points[order], cell_start, frame, darkness):
         yield 0.8 * share, result
+    yield 0.8, result
     cells.fit(low, high)
-    for _ in range(_ROUNDS):
+    for k in range(_ROUNDS):
         if np.abs(cells.left).sum() <= _ENOUGH * cells.asked.sum():
             break
+        yield 0.8 + 0.1 * k / _ROUNDS, result
         cells.even_out(low, high)
         cells.fit(low, high)
     result[order] = cells.radii
@@ -243,6 +245,7 @@ class _Cells:
         n, (h, w) = len(xy), darkness.shape
         sums = np.empty((h, w + 1, 2))
         run_ranges(sum_darkness, h, darkness, sums, grain=64)
+        yield 0.0
         results = self.corners, self.beyond, self.n_corners, self.asked
         for first in range(0, n, _DOTS_AT_ONCE):
             last = min(first + _DOTS_AT_ONCE, n)
@@ -280,11 +283,12 @@ class _Cells:
 
 
 def _grid(
-    points: NDArray[np.float64], shape: tuple[int, ...]
+    points: NDArray[np.float64], darkness: NDArray[np.float32]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
     """Sort dots into a uniform grid; return the order, each grid cell's start, and the frame."""
-    n, (h, w) = len(points), shape
-    side = max(math.sqrt(1.4 * h * w / n), max(h, w) / 30_000)
+    n, (h, w) = len(points), darkness.shape
+    inked = max(float(np.count_nonzero(darkness[::4, ::4])) * 16.0, 0.05 * h * w)
+    side = max(math.sqrt(1.2 * min(inked, h * w) / n), max(h, w) / 30_000)
     columns, rows = max(1, math.ceil(w / side)), max(1, math.ceil(h / side))
     column = np.minimum((points[:, 0] / side).astype(np.int32), columns - 1)
     row = np.minimum((points[:, 1] / side).astype(np.int32), rows - 1)

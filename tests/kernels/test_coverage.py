@@ -20,7 +20,7 @@ def frozen(field):
 
 
 def cells_of(points, darkness):
-    order, start, frame = _grid(points, darkness.shape)
+    order, start, frame = _grid(points, darkness)
     cells = _Cells(len(points))
     for _ in cells.build(points[order], start, frame, darkness):
         pass
