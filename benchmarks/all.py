@@ -16,7 +16,16 @@ from benchmarks.figures import Figure
 from stippler.errors import ParameterError
 from stippler.kernels.pool import n_threads
 
-TOPICS = ("programs", "relaxation", "first_dots", "quality", "tone", "rendering", "editor")
+TOPICS = (
+    "programs",
+    "relaxation",
+    "first_dots",
+    "quality",
+    "tone",
+    "rendering",
+    "editor",
+    "brushes",
+)
 
 
 def main(*, as_json: bool = False, quick: bool = False, only: str = "") -> int:

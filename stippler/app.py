@@ -10,7 +10,7 @@ from stippler.jobs.worker import Worker
 from stippler.ui.editor import Editor
 from stippler.ui.session import Session
 from stippler.ui.window import Window
-from stippler.ui.work import Work, stipple_picture
+from stippler.ui.work import Work, make_ready, stipple_picture
 from stippler.warm import is_warm
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ class App:
             tone=tone,
             width_mm=width_mm,
             stipple=partial(stipple_picture, is_warm=is_warm),
+            make_ready=partial(make_ready, is_warm=is_warm),
         )
         native = False if offscreen else None
         self.editor = Editor(self.window, self.session, native_dialogs=native)

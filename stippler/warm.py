@@ -46,6 +46,7 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     """Name what compiles, in the order a first drawing needs it, and how to make it compile."""
     import numpy as np
 
+    from stippler.brushes.rehearsal import rehearse
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.stippling.plan import FIRST_DOTS, Plan
@@ -61,6 +62,7 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "relaxation and tone", draw
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
+    yield "brushes", rehearse
     yield "files", lambda: _write(draw())
 
 

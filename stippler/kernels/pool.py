@@ -109,8 +109,10 @@ def run_ranges(
         stopped.set()
         raise
     finally:
-        for future in futures:
+        # all ranges are taken: what has not begun (another caller keeps the threads busy) need not
+        begun = [future for future in futures if not future.cancel()]
+        for future in begun:
             future.exception()  # wait for all before anyone touches the arrays again
-    for future in futures:
+    for future in begun:
         future.result()
     return not stopped.is_set()

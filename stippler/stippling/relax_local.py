@@ -19,6 +19,7 @@ from stippler.stippling.dotgrid import DotGrid
 
 _NO_STARS = np.empty((0, LANES), np.int32)
 _NO_FLAGS = np.empty(0, np.uint8)
+_NO_CELLS = np.empty((0, 4))
 
 
 class LocalRelaxation:
@@ -96,6 +97,13 @@ class LocalRelaxation:
             self._place(chosen, self._new_x[slots], self._new_y[slots], self._compartment[chosen])
         return self.positions(chosen)
 
+    def cell_areas(self, dots: ArrayLike) -> NDArray[np.float64]:
+        """Return the areas of the cells of dots, (k,), mm²."""
+        slots = self._slot_of_dot[np.asarray(dots, np.int32)]
+        cells = np.zeros((len(self._new_x), 4))
+        self._compute(slots, cells)
+        return np.array(cells[slots, 0])
+
     def move(self, dots: ArrayLike, points: ArrayLike) -> None:
         """Put dots somewhere else, within a compartment.
 
@@ -136,16 +144,17 @@ class LocalRelaxation:
             owner = np.asarray(compartment_of_dot, np.int32)
         return self._parts.find(xy, owner)
 
-    def _compute(self, slots: NDArray[np.int32]) -> None:
+    def _compute(self, slots: NDArray[np.int32], cells: NDArray[np.float64] = _NO_CELLS) -> None:
+        """Compute cells and where they take their dots; measure them by area if there is room."""
         grid, parts, cap = self._grid, self._parts, CORNER_CAP
-        no_cells = np.empty((0, 4))
+        mass, moment = (_NO_CELLS, _NO_CELLS) if len(cells) else (self._mass, self._moment)
         while len(slots):
             run_ranges(
                 relax_dots, len(slots), slots, False, self._xs, self._ys, self._fixed,
                 self._compartment_of_slot, self._cell_start, 0.0, grid.real, grid.whole,
                 parts.edges, parts.next_edge, grid.edge_start, grid.edge_of_slot, grid.clear,
-                self._mass, self._moment, self._frame, cap, grid.most_edges, 1.0,
-                self._new_x, self._new_y, self._gone, no_cells, self._kind, self._free,
+                mass, moment, self._frame, cap, grid.most_edges, 1.0,
+                self._new_x, self._new_y, self._gone, cells, self._kind, self._free,
                 _NO_STARS, _NO_FLAGS, _NO_FLAGS, grain=128, chunks=2,
             )  # fmt: skip
             slots = slots[self._kind[slots] == TOO_MANY_CORNERS]

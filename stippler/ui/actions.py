@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stippler.ui.commands import CTRL, Command, Commands, Key
+from stippler.brushes.kinds import KINDS
+from stippler.ui.commands import CTRL, CTRL_SHIFT, Command, Commands, Key
+from stippler.ui.layout import BRUSH
 from stippler.ui.session import Session
 from stippler.ui.window import Window
 
@@ -47,8 +50,58 @@ def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
     def print_size() -> None:
         editor.view.print_size(window.px_per_mm)
 
+    painting = editor.painting
+
+    def relax_all() -> None:
+        session.relax(session.plan.iterations or 20, weighted=session.plan.weighted)
+
+    def tool(name: str) -> Callable[[], None]:
+        def choose() -> None:
+            painting.toolbox.choose_kind(name)
+            editor.show_panel(BRUSH)
+
+        return choose
+
+    tools = [
+        Command(f"tool.{kind.name}", kind.label, tool(kind.name), (Key(kind.key),))
+        for kind in KINDS
+    ]
     return Commands(
         [
+            *tools,
+            Command("tool.none", "No brush", lambda: painting.toolbox.choose(-1), (Key("v"),)),
+            Command(
+                "tool.larger",
+                "Larger tip",
+                lambda: painting.toolbox.resize(1.15),
+                (Key("]"), Key("right_bracket")),
+            ),
+            Command(
+                "tool.smaller",
+                "Smaller tip",
+                lambda: painting.toolbox.resize(1 / 1.15),
+                (Key("["), Key("left_bracket")),
+            ),
+            Command("edit.undo", "Undo", painting.undo, (Key("z", CTRL),)),
+            Command("edit.redo", "Redo", painting.redo, (Key("z", CTRL_SHIFT), Key("y", CTRL))),
+            Command(
+                "selection.delete",
+                "Delete the selection",
+                painting.delete,
+                (Key("delete"), Key("backspace")),
+            ),
+            Command(
+                "selection.duplicate",
+                "Duplicate the selection",
+                painting.duplicate,
+                (Key("d", CTRL),),
+            ),
+            Command("selection.all", "Select all", painting.select_all, (Key("a", CTRL),)),
+            Command(
+                "selection.none", "Select nothing", painting.select_none, (Key("a", CTRL_SHIFT),)
+            ),
+            Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),)),
+            Command("file.new", "New page", editor.new_page.ask, (Key("n", CTRL),)),
             Command("file.open", "Open a picture", open_picture, (Key("o", CTRL),)),
             Command("file.export", "Export the drawing", export, (Key("s", CTRL), Key("e", CTRL))),
             Command("file.quit", "Quit", window.ask_to_close, (Key("q", CTRL),)),

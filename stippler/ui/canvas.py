@@ -11,14 +11,17 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 from imgui_bundle import imgui
+from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.ui.look import Look
 from stippler.ui.session import Session
+from stippler.ui.tools.toolbox import Chosen
 from stippler.ui.widgets import Rect
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Page
+    from stippler.drawing.editing import Editing
     from stippler.render.renderer import Renderer
 
 
@@ -37,7 +40,9 @@ class Canvas:
         self._texture: moderngl.Texture | None = None
         self._target: moderngl.Framebuffer | None = None
         self._drawn: object = None
-        self._uploaded = -1
+        self._uploaded: object = None
+        self._edited: Editing | None = None  # whose dots are on the GPU
+        self._selected: NDArray[np.int64] = np.empty(0, np.int64)
         self.n_drawn = 0
 
     def show(self, area: Rect, size_px: Size) -> None:
@@ -47,12 +52,13 @@ class Canvas:
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
 
-    def draw(self, session: Session, camera: Camera, look: Look) -> bool:
+    def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
         size_px = self._texture.size
-        key = (camera, size_px, session.revision, look.theme, look.reference_opacity)
+        content = _content(session, selection)
+        key = (camera, size_px, content, look.theme, look.reference_opacity)
         if key == self._drawn:
             return False
         if session.drawing is None:
@@ -60,7 +66,7 @@ class Canvas:
             self._target.clear(*look.theme.desk, 1.0)
         else:
             renderer = self._renderer()
-            self._upload(renderer, session, session.drawing.page)
+            self._upload(renderer, session, selection, session.drawing.page)
             renderer.set_reference(
                 session.reference if look.reference_shown else None, look.reference_opacity
             )
@@ -85,16 +91,36 @@ class Canvas:
             self._made = Renderer(self._ctx)
         return self._made
 
-    def _upload(self, renderer: Renderer, session: Session, page: Page) -> None:
+    def _upload(self, renderer: Renderer, session: Session, selection: Chosen, page: Page) -> None:
         """Bring what has changed since the last call to the GPU."""
-        if session.revision == self._uploaded:
+        content = _content(session, selection)
+        if content == self._uploaded:
             return
         renderer.set_page(page.width_mm, page.height_mm)
-        if session.position_mm is not None and session.radius_mm is not None:
+        editing = session.editing if session.position_mm is None else None
+        if editing is not None:
+            self._upload_edited(renderer, editing, selection)
+        elif session.position_mm is not None and session.radius_mm is not None:
             renderer.set_positions(session.position_mm, session.radius_mm)
         else:
             renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
-        self._uploaded = session.revision
+        self._uploaded, self._edited = content, editing
+
+    def _upload_edited(self, renderer: Renderer, editing: Editing, selection: Chosen) -> None:
+        changed, selected = editing.take_changed(), selection.mask(editing)
+        dots, rows = editing.dots, changed.rows
+        if editing is not self._edited or rows is None or renderer.n_dots == 0:
+            renderer.set_dots(dots, selected)
+        else:
+            if selection.ids is not self._selected:
+                for ids in (self._selected, selection.ids):
+                    there = editing.rows(ids)
+                    rows = np.union1d(rows, there[there >= 0])
+            if len(rows) or len(dots) != renderer.n_dots:
+                renderer.update_dots(dots, rows, selected)
+            if changed.places:
+                renderer.set_positions(dots.position_mm, dots.radius_mm)
+        self._selected = selection.ids
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
         if self._texture is None or self._texture.size != size_px:
@@ -115,3 +141,9 @@ class Canvas:
         self._free()
         if self._made is not None:
             self._made.release()
+
+
+def _content(session: Session, selection: Chosen) -> tuple[int, int, int]:
+    """Return what tells one state of the dots from another."""
+    edited = session.editing.revision if session.editing is not None else -1
+    return session.revision, edited, selection.revision

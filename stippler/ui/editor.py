@@ -11,20 +11,27 @@ from imgui_bundle import imgui
 from stippler.ui.actions import commands_for
 from stippler.ui.canvas import Canvas
 from stippler.ui.dialogs import Dialogs, has_native_dialogs
-from stippler.ui.events import Dropped, Event, KeyDown
+from stippler.ui.events import Dropped, Event, KeyDown, Moved, Pressed, Released, Scrolled
 from stippler.ui.gui import Gui
-from stippler.ui.layout import DRAWING, Layout
+from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW, Layout
 from stippler.ui.look import Look
 from stippler.ui.messages import ERROR, WARNING
+from stippler.ui.overlay import draw_overlay
+from stippler.ui.painting import Painting
+from stippler.ui.panels.brush import draw_brush
 from stippler.ui.panels.dots import draw_dots
+from stippler.ui.panels.history import draw_history
+from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.sight import draw_view
 from stippler.ui.panels.status import draw_status
+from stippler.ui.panels.tools import draw_tools
 from stippler.ui.pointer import Pointer
 from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule
 from stippler.ui.session import Session
+from stippler.ui.states import Idle
 from stippler.ui.view import BLANK, View
 from stippler.ui.widgets import Rect, Widgets
 from stippler.ui.window import Window
@@ -62,10 +69,13 @@ class Editor:
         self.dialogs = Dialogs(use_native=native)
         self.gui = Gui(window, self.look.theme)
         self.canvas = Canvas(window.ctx)
+        self.painting = Painting(session)
+        self.new_page = NewPage(session)
         self.commands = commands_for(self, session, window)
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
         self._layout, self._schedule, self._rate = Layout(), Schedule(), FrameRate()
+        self._ratio, self._panel_to_show = 1.0, ""
         self._last_s = clock()
         self._size_px = window.size_px
 
@@ -93,13 +103,15 @@ class Editor:
         if not self._schedule.due(began) or 0 in self._window.size_px:
             return False
         self._frame(events, began)
-        self._schedule.note_frame(began, self._clock(), moving=self.view.moving)
+        moving = self.view.moving or self.painting.toolbox.is_timed
+        self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
         return True
 
     def close(self) -> None:
-        """Let go of everything on the GPU; the window stays."""
+        """Keep the brushes; let go of everything on the GPU. The window stays."""
+        self.painting.toolbox.save()
         self.canvas.close()
         self.gui.close()
 
@@ -115,7 +127,9 @@ class Editor:
             self._report(failure, "the window")
         with self._window.frame() as screen:
             try:
-                self.canvas.draw(self.session, self.view.camera, self.look)
+                self.canvas.draw(
+                    self.session, self.painting.toolbox.selection, self.view.camera, self.look
+                )
             except Exception as error:  # noqa: BLE001 - the editor lives on; the person is told
                 self._report(error, "the page")
             screen.use()
@@ -128,25 +142,59 @@ class Editor:
         self._place(area)
         for event in events:
             self._take(event)
+        self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
         self.canvas.show(area, self.view.size_px)
+        self._guarded("the brush's outline", lambda: self._draw_overlay(area))
         if self.pointer.state.cursor == "hand" and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+        self._guarded("the tools", self._draw_tools)
         self._guarded("the panel", self._draw_panel)
+        self._guarded("the brush's panel", self._draw_brush)
+        self._guarded("the view's panel", self._draw_view)
+        self._guarded("the history", self._draw_history)
         if self.session.drawing is None and not self.session.busy:
             draw_invitation(self.widgets, area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
         self._guarded("the dialog", lambda: self.dialogs.draw(self.widgets))
+        self._guarded("the new page", lambda: self.new_page.draw(self.widgets))
+        if self._panel_to_show:
+            imgui.set_window_focus(self._panel_to_show)
+            self._panel_to_show = ""
 
     def _draw_panel(self) -> None:
-        imgui.begin(DRAWING, None, imgui.WindowFlags_.no_collapse)
-        draw_picture(self.widgets, self.session, self.commands)
-        self.widgets.rule()
-        draw_dots(self.widgets, self.session, self.commands)
-        self.widgets.rule()
-        draw_view(self.widgets, self.look, self.commands)
+        if imgui.begin(DRAWING, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_picture(self.widgets, self.session, self.commands)
+            self.widgets.rule()
+            draw_dots(self.widgets, self.session, self.commands)
         imgui.end()
+
+    def _draw_view(self) -> None:
+        if imgui.begin(VIEW, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_view(self.widgets, self.look, self.commands)
+        imgui.end()
+
+    def show_panel(self, name: str) -> None:
+        """Bring a panel to the front."""
+        self._panel_to_show = name
+        self._schedule.note_input(self._clock())
+
+    def _draw_tools(self) -> None:
+        draw_tools(self.widgets, self.painting.toolbox, self.commands)
+
+    def _draw_brush(self) -> None:
+        if imgui.begin(BRUSH, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_brush(self.widgets, self.painting, self.commands)
+        imgui.end()
+
+    def _draw_history(self) -> None:
+        if imgui.begin(HISTORY, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_history(self.widgets, self.session, self.painting, self.commands)
+        imgui.end()
+
+    def _draw_overlay(self, area: Rect) -> None:
+        draw_overlay(self.painting.toolbox, self.view, area, self._ratio, self.pointer.at_mm)
 
     def _draw_status(self) -> None:
         zoom = self.view.camera.px_per_mm / self._window.px_per_mm
@@ -154,7 +202,7 @@ class Editor:
 
     def _place(self, area: Rect) -> None:
         """Tell view and pointer where the canvas is."""
-        ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
+        self._ratio = ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
         self.pointer.place((area[0] * ratio, area[1] * ratio))
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
@@ -165,12 +213,30 @@ class Editor:
         match event:
             case Dropped(paths=paths):
                 self._drop(paths)
-            case KeyDown() if self.gui.wants_keys or self.dialogs.is_open:
+            case KeyDown() if self.gui.wants_keys or self._asks:
                 pass
+            case KeyDown() if self.painting.is_busy or self.painting.leave(event):
+                self._paint(event)
             case KeyDown() if self.commands.take(event):
+                pass
+            case _ if self._paint(event):
                 pass
             case _:
                 self.pointer.take(event, elsewhere=self.gui.wants_pointer)
+
+    @property
+    def _asks(self) -> bool:
+        """Whether a dialog is open."""
+        return self.dialogs.is_open or self.new_page.is_open
+
+    def _paint(self, event: Event) -> bool:
+        """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
+        free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
+        if isinstance(event, Moved | Pressed | Released | Scrolled):
+            if not (free or self.painting.is_busy):
+                return False
+            event = self.pointer.local(event)
+        return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)
 
     def _drop(self, paths: tuple[Path, ...]) -> None:
         if len(paths) > 1:

@@ -1,13 +1,13 @@
-"""Where things are: a dock space over the window, the drawing's panel at its left edge."""
+"""Where things are: tools at the left edge, then panels as tabs of a dock, then the canvas."""
 
 from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.ui.theme import PANEL_WIDTH, STATUS_HEIGHT
+from stippler.ui.theme import PANEL_WIDTH, STATUS_HEIGHT, STRIP_WIDTH
 from stippler.ui.widgets import Rect
 
-DRAWING = "Drawing"
+DRAWING, BRUSH, VIEW, HISTORY = "Drawing", "Brush", "View", "History"
 _HOST = (
     imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_docking
@@ -28,8 +28,10 @@ class Layout:
     def draw(self, scale: float) -> Rect:
         """Draw the dock space; return the canvas, in ImGui's coordinates."""
         viewport = imgui.get_main_viewport()
-        size = (viewport.size.x, max(viewport.size.y - STATUS_HEIGHT * scale, 1.0))
-        imgui.set_next_window_pos(viewport.pos)
+        strip = STRIP_WIDTH * scale
+        height = max(viewport.size.y - STATUS_HEIGHT * scale, 1.0)
+        size = (max(viewport.size.x - strip, 1.0), height)
+        imgui.set_next_window_pos((viewport.pos.x + strip, viewport.pos.y))
         imgui.set_next_window_size(size)
         imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
@@ -54,8 +56,9 @@ class Layout:
         build.dock_builder_set_node_size(space, size)
         share = min(PANEL_WIDTH * scale / max(size[0], 1.0), 0.6)
         split = build.dock_builder_split_node(space, imgui.Dir.left, share)
-        build.dock_builder_dock_window(DRAWING, split.id_at_dir)
+        for name in (DRAWING, BRUSH, VIEW, HISTORY):
+            build.dock_builder_dock_window(name, split.id_at_dir)
         build.dock_builder_get_node(split.id_at_dir).set_local_flags(
-            build.DockNodeFlagsPrivate_.no_tab_bar
+            build.DockNodeFlagsPrivate_.no_close_button
         )
         build.dock_builder_finish(space)

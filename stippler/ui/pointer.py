@@ -48,7 +48,7 @@ class Pointer:
         """
         match event:
             case Moved() | Pressed() | Released() | Scrolled():
-                local = self._local(event)
+                local = self.local(event)
                 self.at_px = None if elsewhere else (local.x_px, local.y_px)
                 if not elsewhere or held(self.state) or isinstance(event, Moved):
                     self._pass(local)
@@ -72,6 +72,7 @@ class Pointer:
             case Zoom(factor, x, y):
                 self._view.zoom(factor, (x, y))
 
-    def _local(self, event: _Placed) -> _Placed:
+    def local(self, event: _Placed) -> _Placed:
+        """Return an event in the canvas's coordinates."""
         x, y = self._origin_px
         return replace(event, x_px=event.x_px - x, y_px=event.y_px - y)

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from stippler.drawing.drawing import Drawing
+    from stippler.drawing.drawing import Drawing, Page
+    from stippler.drawing.editing import Editing
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update, Worker
     from stippler.stippling.plan import Plan
@@ -56,8 +57,10 @@ class Session:
         The picture that is open; one that could not be read never gets here.
     drawing : Drawing or None
         Page, reference and dots; its dots are those of the last job that came to an end.
+    editing : Editing or None
+        The drawing's dots, once they can be edited.
     position_mm, radius_mm : arrays or None
-        The dots to show now: the job's latest, then the drawing's.
+        The dots of a job that makes new ones; None when there is no such job.
     revision : int
         Grows whenever the dots to show, the page or the reference change.
     """
@@ -71,14 +74,17 @@ class Session:
         tone: str,
         width_mm: float,
         stipple: Stipple,
+        make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._worker, self._exporter, self._stipple, self._clock = worker, exporter, stipple, clock
+        self._make_ready = make_ready
         self.plan = plan
         self.tone, self.width_mm = tone, width_mm
         self.running_plan: Plan | None = None
         self.source: Source | None = None
         self.drawing: Drawing | None = None
+        self.editing: Editing | None = None
         self.position_mm: NDArray[np.float64] | None = None
         self.radius_mm: NDArray[np.float32] | None = None
         self.revision = 0
@@ -88,6 +94,7 @@ class Session:
         self._asked: Source | None = None  # what the job that runs was asked for
         self._last: Progress | None = None
         self._request: int | None = None
+        self._page: Page | None = None  # a page that is asked for
         self._export_request: int | None = None
         self._steps = StepRate()
 
@@ -104,6 +111,44 @@ class Session:
             self.messages.say("open a picture first", WARNING)
             return
         self._begin(replace(source, tone=self.tone, width_mm=self.width_mm))
+
+    def new(self, page: Page) -> None:
+        """Begin a drawing on an empty page."""
+        self._end_run()
+        self._page, self._asked, self.running_plan = page, None, None
+        self._run("running", work.PREPARE, self._make_ready)
+
+    def relax(self, iterations: int, *, weighted: bool) -> None:
+        """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""
+        editing = self.editing
+        if editing is None or not self.paintable or editing.in_stroke:
+            self.messages.say("there are no dots to relax yet", WARNING)
+            return
+        if not len(editing.dots):
+            self.messages.say("there are no dots to relax", WARNING)
+            return
+        self._end_run()
+        assert self.drawing is not None
+        frozen = replace(self.drawing, dots=editing.begin_run("Relax all"))
+        self._run(
+            "running", "relax", lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
+        )
+        self.total = iterations
+
+    def undo(self) -> None:
+        """Take the last step back; a relaxation that goes on ends and is taken back."""
+        editing = self.editing
+        if editing is None or not self.paintable or editing.in_stroke:
+            return
+        if editing.history.undone is not None and editing.history.undone.is_open:
+            self.stop()
+        editing.undo()
+
+    def redo(self) -> None:
+        """Do the last undone step again."""
+        editing = self.editing
+        if editing is not None and self.paintable and not editing.in_stroke:
+            editing.redo()
 
     def pause(self) -> None:
         """Hold the job where it is."""
@@ -167,8 +212,10 @@ class Session:
         if update.result is not None:
             self._take(update.result)
         if update.ended == "finished":
+            is_new = self.position_mm is not None or self.source is None
             self._end("done")
-            self._report()
+            if is_new:
+                self._report()
         elif update.ended == "stopped":
             self._end("stopped")
         elif update.ended == "failed":
@@ -201,6 +248,16 @@ class Session:
         return self._export_request is not None
 
     @property
+    def relaxing(self) -> bool:
+        """Whether the job that runs moves the drawing's own dots."""
+        return self.busy and self.editing is not None and self.editing.in_run
+
+    @property
+    def paintable(self) -> bool:
+        """Whether the dots can be edited now: they are there, and no job makes new ones."""
+        return self.editing is not None and (not self.busy or self.relaxing)
+
+    @property
     def steps_per_s(self) -> float:
         """Relaxation steps a second in the work that runs, or the last; 0 before any."""
         return self._steps.per_s
@@ -208,7 +265,9 @@ class Session:
     @property
     def n_dots(self) -> int:
         """How many dots there are to show."""
-        return 0 if self.position_mm is None else len(self.position_mm)
+        if self.position_mm is not None:
+            return len(self.position_mm)
+        return len(self.editing.dots) if self.editing is not None else 0
 
     @property
     def reference(self) -> Reference | None:
@@ -218,8 +277,8 @@ class Session:
     @property
     def name(self) -> str:
         """File name of the picture that is open or being opened."""
-        source = self._asked if self._request is not None else self.source
-        return source.path.name if source else ""
+        source = self._asked if self._request is not None and self._asked else self.source
+        return source.path.name if source else "Untitled" if self.drawing else ""
 
     @property
     def outdated(self) -> bool:
@@ -233,13 +292,22 @@ class Session:
     # --- inside -----------------------------------------------------------------------------
 
     def _begin(self, source: Source) -> None:
+        self._end_run()
         known = self.reference if source == self.source else None
         plan, stipple = self.plan, self._stipple
-        self._request = self._worker.start(lambda: stipple(source, plan, known))
-        self._asked, self.running_plan, self.phase = source, plan, "running"
-        self.stage, self.done, self.total = work.READ if known is None else "first dots", 0, 0
+        self._page, self._asked, self.running_plan = None, source, plan
+        first = work.READ if known is None else "first dots"
+        self._run("running", first, lambda: stipple(source, plan, known))
+
+    def _run(self, phase: Phase, stage: str, job: Callable[[], Iterator[Work]]) -> None:
+        self._request = self._worker.start(job)
+        self.phase, self.stage, self.done, self.total = phase, stage, 0, 0
         self._last = None
         self._steps = StepRate()
+
+    def _end_run(self) -> None:
+        if self.editing is not None:
+            self.editing.end_run()
 
     def _take(self, result: Work) -> None:
         self.stage, self.done, self.total = result.stage, result.done, result.total
@@ -252,35 +320,64 @@ class Session:
                 result.progress.radius_mm,
             )
             self.revision += 1
+        if result.moved_mm is not None and self.editing is not None:
+            self.editing.merge(result.moved_mm)
         if result.stage == "relax":
             self._steps.note(self._clock(), result.done)
 
     def _adopt(self, reference: Reference) -> None:
-        from stippler.drawing.drawing import Drawing, Page
+        from stippler.drawing.drawing import Page
 
-        self.drawing = Drawing.blank(Page(reference.width_mm, reference.height_mm))
-        self.drawing.reference = reference
+        self._open_page(Page(reference.width_mm, reference.height_mm), reference)
         self.source = self._asked
-        self.position_mm = self.radius_mm = None
+
+    def _open_page(self, page: Page, reference: Reference | None) -> None:
+        from stippler.drawing.drawing import Drawing
+
+        if self.editing is not None:
+            self.editing.history.close()
+        self.drawing = Drawing.blank(page)
+        self.drawing.reference = reference
+        self.editing = self.position_mm = self.radius_mm = None
         self.revision += 1
 
     def _end(self, phase: Phase) -> None:
         self._request, self.phase = None, phase
-        if self.source is None:
+        if self._page is not None and phase == "done":
+            self._open_page(self._page, None)
+            self.source = None
+        self._page = None
+        if self.drawing is None:
             self.phase = "empty"
+        self._end_run()
         self._keep_dots()
 
     def _keep_dots(self) -> None:
-        """Make the dots that are shown the drawing's."""
-        if self.drawing is None or self.position_mm is None or self.radius_mm is None:
+        """Make the dots that are shown the drawing's; replacing others is a step of its history."""
+        if self.drawing is None:
             return
-        from stippler.drawing.dots import Dots
+        import numpy as np
 
-        self.drawing.dots = Dots.round(self.position_mm, self.radius_mm)
+        from stippler.drawing.dots import Dots
+        from stippler.drawing.editing import Editing
+
+        if self.position_mm is not None and self.radius_mm is not None:
+            made = Dots.round(self.position_mm, self.radius_mm)
+            if self.editing is None:
+                self.drawing.dots = made
+            else:
+                self.editing.begin("Stipple")
+                self.editing.remove(np.arange(len(self.editing.dots)))
+                self.editing.insert(made)
+                self.editing.commit()
+        self.position_mm = self.radius_mm = None
+        if self.editing is None:
+            self.editing = Editing(self.drawing)
+        self.revision += 1
 
     def _snapshot(self, drawing: Drawing) -> Drawing:
         """Copy the drawing as it looks now, in the midst of a job too."""
-        if self.busy and self.position_mm is not None and self.radius_mm is not None:
+        if self.position_mm is not None and self.radius_mm is not None:
             from stippler.drawing.dots import Dots
 
             return replace(drawing, dots=Dots.round(self.position_mm, self.radius_mm))
@@ -288,6 +385,8 @@ class Session:
 
     def _report(self) -> None:
         """Say what has been drawn, and what it falls short of."""
+        if self.source is None:
+            return
         from stippler.stippling.stipple import notes_on
 
         self.messages.say(f"{self.n_dots:,} dots drawn")

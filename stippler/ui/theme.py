@@ -12,9 +12,10 @@ TEXT_PX = 15.0
 SMALL_PX = 13.0
 PANEL_WIDTH = 296.0
 STATUS_HEIGHT = 28.0
+STRIP_WIDTH = 46.0
 
 # Font Awesome 6 Free Solid, merged into the text font
-ICON_OPEN, ICON_SAVE, ICON_DICE = "\uf07c", "\uf019", "\uf522"
+ICON_NEW, ICON_OPEN, ICON_SAVE, ICON_DICE = "\uf15b", "\uf07c", "\uf019", "\uf522"
 ICON_PLAY, ICON_PAUSE, ICON_STOP = "\uf04b", "\uf04c", "\uf04d"
 ICON_FIT, ICON_PRINT, ICON_WARNING = "\uf31e", "\uf02f", "\uf071"
 ICON_LIGHT, ICON_DARK = "\uf185", "\uf186"

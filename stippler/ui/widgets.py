@@ -175,6 +175,18 @@ class Widgets:
         self.tip(tip)
         return percent / 100
 
+    def slider(
+        self, label: str, value: float, low: float, high: float, tip: str, form: str = "%.0f"
+    ) -> float:
+        """Take a number by dragging; Ctrl and a click types it."""
+        self.label(label)
+        _, value = imgui.slider_float(
+            f"##{label}", value, low, high, form, imgui.SliderFlags_.always_clamp
+        )
+        self.note(label)
+        self.tip(tip)
+        return value
+
     def check(self, label: str, value: bool, tip: str) -> bool:
         """Take a yes or no."""
         _, value = imgui.checkbox(label, value)

@@ -269,6 +269,11 @@ class Window:
         return (width_px / width if width else 1.0), (height_px / height if height else 1.0)
 
     @property
+    def now_s(self) -> float:
+        """The time, as events have it."""
+        return float(glfw.get_time())
+
+    @property
     def wants_to_close(self) -> bool:
         """Whether the person asked to close the window."""
         return bool(glfw.window_should_close(self._handle))

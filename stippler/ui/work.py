@@ -18,6 +18,9 @@ from typing import TYPE_CHECKING
 from stippler.errors import StipplerError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.stippling.plan import Plan
@@ -50,6 +53,8 @@ class Work:
         The picture, once it is read.
     progress : Progress or None
         The dots, once there are some.
+    moved_mm : (n, 2) float64 or None
+        Where a relaxation of the drawing's own dots has brought them.
     """
 
     stage: str
@@ -57,6 +62,7 @@ class Work:
     total: int = 0
     reference: Reference | None = None
     progress: Progress | None = None
+    moved_mm: NDArray[np.float64] | None = None
 
 
 def stipple_picture(
@@ -76,10 +82,49 @@ def stipple_picture(
     if not is_warm():
         for n_ready, n_kernels in _prepared_kernels():
             yield Work(PREPARE, n_ready, n_kernels, reference)
+    from stippler.brushes.rehearsal import rehearse
     from stippler.stippling.stipple import stages
 
     for progress in stages(reference, plan):
         yield Work(progress.stage, progress.done, progress.total, reference, progress)
+    rehearse()
+
+
+def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Load everything that painting needs, and compile it where it is not."""
+    if not is_warm():
+        for n_ready, n_kernels in _prepared_kernels():
+            yield Work(PREPARE, n_ready, n_kernels)
+    from stippler.brushes.rehearsal import rehearse
+
+    rehearse()
+    yield Work(PREPARE, 1, 1)
+
+
+def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Iterator[Work]:
+    """Relax the free dots of a drawing that nobody else changes, each within its area."""
+    yield Work("relax", 0, iterations)
+    import numpy as np
+
+    from stippler.stippling.density import DensityField
+    from stippler.stippling.relax import Relaxation
+
+    dots, reference = drawing.dots, drawing.reference
+    used, shape_of_dot = np.unique(dots.area, return_inverse=True)
+    density = None
+    if weighted and reference is not None:
+        # dots settle at the root of their weight
+        density = DensityField(np.square(reference.darkness), reference.pixel_mm)
+    engine = Relaxation(
+        dots.position_mm,
+        [drawing.areas[int(k)].outline_mm for k in used],
+        dots.fixed,
+        shape_of_dot,
+        density,
+    )
+    for k in range(iterations):
+        engine.step()
+        yield Work("relax", k + 1, iterations, moved_mm=engine.points)
 
 
 def _prepared_kernels() -> Iterator[tuple[int, int]]:

@@ -12,6 +12,7 @@ from PIL import Image
 from stippler.drawing.reference import Reference
 from stippler.stippling.plan import Plan
 from stippler.ui import editor as editor_module
+from stippler.ui.layout import VIEW
 from stippler.ui.theme import DARK, LIGHT
 from stippler.ui.work import Source, Work
 
@@ -137,6 +138,8 @@ def test_pan_zoom_and_fit(desk, picture: Path) -> None:
     assert view.camera == fitted
     host.key("1")
     assert view.camera.px_per_mm == pytest.approx(desk.app.window.px_per_mm)
+    desk.app.editor.show_panel(VIEW)
+    host.settle()
     host.click("Fit")
     assert view.camera == fitted
 
@@ -159,6 +162,8 @@ def test_the_page_is_drawn_only_when_it_changes(desk, picture: Path) -> None:
         desk.host.move(x, 300)
     assert editor.n_frames > frames
     assert canvas.n_drawn == drawn
+    desk.app.editor.show_panel(VIEW)
+    desk.host.settle()
     desk.host.click("Show picture")
     assert canvas.n_drawn > drawn
 
@@ -298,8 +303,8 @@ def test_a_second_picture_supersedes_the_first(desk, picture: Path, tmp_path: Pa
 def test_it_sleeps_when_nothing_changes(desk, picture: Path) -> None:
     open_and_finish(desk, picture)
     desk.app.session.messages.dismiss()
-    for _ in range(5):
-        desk.app.step(0.6)  # the tooltip's last look
+    # the tooltip's last look, and the one at the end of the line that is dismissed
+    desk.host.until(lambda: desk.app.editor.sleep_s() > 5.0, "sleep")
     frames = desk.app.editor.n_frames
     assert desk.app.editor.sleep_s() > 5.0
     desk.app.step(0.0)

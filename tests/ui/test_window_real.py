@@ -21,7 +21,7 @@ from stippler.ui.theme import LIGHT, Colour
 pytestmark = pytest.mark.window
 
 SIZE = (1280, 800)
-CANVAS = (296, 0, 1280, 771)
+CANVAS = (342, 0, 1280, 771)
 _PATIENCE_S = 60.0
 
 
@@ -154,7 +154,7 @@ def test_wheel_and_middle_button_move_the_page(
         return abs(dx - 60) < 2 and abs(dy + 40) < 2
 
     until(moved, "the moved page")
-    desk.xdotool("mousemove", *places["Fit"], "click", 1)
+    desk.xdotool("key", "f")
     until(lambda: abs(desk.ink().sum() / fitted - 1) < 0.02, "the fitted page")
     assert desk.quit() == (0, "")
 

@@ -156,6 +156,14 @@ def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> Non
         enabled=session.busy,
     ):
         session.stop()
+    if widgets.button(
+        "Relax all",
+        f"{commands['work.relax'].hint}: moves the dots that are there, by the iterations above; "
+        "you can paint meanwhile.",
+        width=-1.0,
+        enabled=session.paintable and session.n_dots > 0,
+    ):
+        commands["work.relax"].run()
 
 
 def _draw_progress(widgets: Widgets, session: Session) -> None:

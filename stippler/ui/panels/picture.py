@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from stippler.drawing.drawing import MAX_PAGE_MM
 from stippler.ui.commands import Commands
 from stippler.ui.session import Session
-from stippler.ui.theme import ICON_OPEN, ICON_SAVE
+from stippler.ui.theme import ICON_NEW, ICON_OPEN, ICON_SAVE
 from stippler.ui.widgets import Widgets
 
 _TONES = ("linear", "perceptual")
@@ -23,7 +23,15 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
     """Draw the section."""
     widgets.heading("Picture")
     _draw_name(widgets, session)
-    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
+    width = (imgui.get_content_region_avail().x - 2 * widgets.gap) / 3
+    if widgets.button(
+        "New",
+        f"{commands['file.new'].hint}: an empty page, without a picture.",
+        icon=ICON_NEW,
+        width=width,
+    ):
+        commands["file.new"].run()
+    imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Open",
         f"{commands['file.open'].hint}; or drop one on the window.",

@@ -1,0 +1,182 @@
+"""Brushes: what a stamp, an undo and a dot cost."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from benchmarks.figures import Figure, median_s
+from stippler.brushes.brush import Brush
+from stippler.brushes.kinds import KINDS
+from stippler.brushes.stroke import PointerSample, Stamp
+from stippler.brushes.stroking import Stroke
+from stippler.brushes.tip import Tip
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.editing import Editing
+from stippler.drawing.reference import Reference
+from stippler.jobs.worker import Worker
+from stippler.ui.work import Work, relax_drawing
+
+_SIDE_MM = 200.0
+_HARD = Tip(hardness=1.0)
+_VARIANTS: dict[str, list[dict[str, float | str | bool]]] = {
+    "size": [{"how": "enlarge"}, {"how": "tone"}],
+    "shape": [{"along": "stroke"}, {"along": "edge"}],
+    "jitter": [{"measure": "distance"}, {"measure": "cell"}],
+    "spray": [{"per_s": 5000.0, "apart_mm": 0.1}],
+    "thin": [{"per_s": 5000.0}],
+}
+
+
+def figures(quick: bool = False) -> list[Figure]:
+    """Measure; `quick` uses fewer dots."""
+    n = 50_000 if quick else 200_000
+    return [*_stamps(n), *_history(n), *_pauses(n, 3.0 if quick else 15.0), *_memory(n)]
+
+
+def _editing(n: int) -> Editing:
+    rng = np.random.default_rng(1)
+    drawing = Drawing.blank(Page(_SIDE_MM, _SIDE_MM))
+    ramp = np.tile(np.linspace(0, 1, 1000, dtype=np.float32), (1000, 1))
+    drawing.reference = Reference(ramp, _SIDE_MM)
+    # one dot in each square of a grid: as even as a drawing that is being relaxed
+    side = math.isqrt(n)
+    corner = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)
+    points = (corner + rng.uniform(0.1, 0.9, corner.shape)) * (_SIDE_MM / side)
+    drawing.dots = Dots.round(points, 0.1)
+    return Editing(drawing)
+
+
+def _stamps(n: int) -> list[Figure]:
+    """Time single stamps in the middle of a stroke, each at another place."""
+    editing = _editing(n)
+    radius = math.sqrt(500 / len(editing.dots) / math.pi) * _SIDE_MM
+    found = []
+    for kind in KINDS:
+        if kind.rhythm not in ("arc", "time"):
+            continue
+        for values in _VARIANTS.get(kind.name, [{}]):
+            brush = Brush(kind.name, kind.name, radius, _HARD, values=values)
+            name = " ".join([kind.name, *(str(v) for v in values.values() if isinstance(v, str))])
+            times = _times(editing, brush)
+            found.append(
+                Figure(
+                    f"stamp on 500 dots in {len(editing.dots) // 1000}k: {name}",
+                    statistics.median(times) * 1e3, "ms", 1.0, 0.5,
+                    note=f"95 % within {np.percentile(times, 95) * 1e3:.2f} ms",
+                )
+            )  # fmt: skip
+    return found
+
+
+def _times(editing: Editing, brush: Brush) -> list[float]:
+    step = 1.0 / 60.0 if brush.kind != "relax" else 1.0 / float(brush.value("per_s"))
+    stroke = Stroke(editing, brush, PointerSample(20.0, 20.0), 1)
+    times = []
+    for k in range(120):
+        x = 20.0 + 1.3 * brush.radius_mm * (k % 30)
+        y = 20.0 + 2.2 * brush.radius_mm * (k // 30)
+        stroke.follow(PointerSample(x, y, t=(k + 1) * step - 1e-6))
+        begin = time.perf_counter()
+        stroke._apply(Stamp(x, y, 1.0, 0.3, 0.1, 0.05, step))
+        times.append(time.perf_counter() - begin)
+    stroke.cancel()
+    return times[10:]
+
+
+def _history(n: int) -> list[Figure]:
+    editing = _editing(n)
+    rows = np.arange(50_000)
+
+    def stroke() -> None:
+        editing.begin("move")
+        editing.move(rows, editing.dots.position_mm[rows] + 0.01)
+        editing.change("radius_mm", rows, np.full(len(rows), 0.2, np.float32))
+        editing.commit()
+
+    def erase() -> None:
+        editing.begin("erase")
+        editing.remove(rows)
+        editing.commit()
+
+    out = []
+    for name, act in (("move and resize", stroke), ("erase", erase)):
+        times = []
+        for _ in range(9):
+            act()
+            begin = time.perf_counter()
+            editing.undo()
+            times.append(time.perf_counter() - begin)
+        out.append(
+            Figure(
+                f"undo of a stroke on 50k dots in {len(editing.dots) // 1000}k: {name}",
+                statistics.median(times) * 1e3, "ms", 10.0, 3.0,
+            )
+        )  # fmt: skip
+    whole = _editing(n)
+    frozen = whole.begin_run("relax")
+    moved = frozen.position_mm * 0.999
+    merge = median_s(lambda: whole.merge(moved), repeats=9)
+    out.append(Figure(f"merging a result for {len(frozen) // 1000}k dots", merge * 1e3, "ms"))
+    return out
+
+
+def _pauses(n: int, seconds: float) -> list[Figure]:
+    """Paint at 60 frames a second while a worker relaxes all dots; GL is not part of it."""
+    editing = _editing(n)
+    drawing = editing.drawing
+    frozen = replace(drawing, dots=editing.begin_run("Relax all"))
+    worker: Worker[Work] = Worker(lambda: None)
+    worker.start(lambda: relax_drawing(frozen, 1_000_000, weighted=False))
+    brush = Brush("push", "push", 3.0, values={"strength": 50.0})
+    stroke: Stroke | None = None
+    took: list[float] = []
+    late: list[float] = []
+    merged = 0
+    begin = time.perf_counter()
+    due = begin
+    while (now := time.perf_counter()) - begin < seconds:
+        if now < due:
+            time.sleep(due - now)
+            continue
+        late.append(now - due)
+        due = max(due + 1 / 60, now)
+        update = worker.poll()
+        if update is not None and update.result is not None and update.result.moved_mm is not None:
+            merged += editing.merge(update.result.moved_mm) > 0
+        t = now - begin
+        sample = PointerSample(100 + 80 * math.sin(t), 100 + 80 * math.cos(1.7 * t), t=t)
+        if stroke is None:
+            stroke = Stroke(editing, brush, sample, 1)
+        elif len(took) % 120 == 119:
+            stroke.commit(sample)
+            stroke = None
+        else:
+            stroke.follow(sample)
+        editing.take_changed()
+        took.append(time.perf_counter() - now)
+    worker.close()
+    name = f"painting while {len(editing.dots) // 1000}k dots relax, GL excluded"
+    both = [a + b for a, b in zip(took, late, strict=True)]
+    return [
+        Figure(
+            f"{name}: longest pause", max(both) * 1e3, "ms", 25.0, 17.0,
+            note=f"{len(took)} frames, {merged} results merged",
+        ),
+        Figure(f"{name}: our share of a frame, median", statistics.median(took) * 1e3, "ms"),
+    ]  # fmt: skip
+
+
+def _memory(n: int) -> list[Figure]:
+    editing = _editing(n)
+    return [
+        Figure(
+            "memory for each dot while edited, without history and GPU buffers",
+            editing.n_bytes / len(editing.dots), "bytes", 200.0, 100.0,
+        )
+    ]  # fmt: skip

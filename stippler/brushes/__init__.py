@@ -1,0 +1,1 @@
+"""Brushes: tips, strokes and effects, without a window; one module a family of effects."""

@@ -1,0 +1,279 @@
+"""What a stamp of each type of brush does to the dots under it.
+
+Each effect takes a `Touch`, asks the pure functions of its family for new values, and hands them
+to the drawing being edited.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.brushes import move, scatter, shape, size
+from stippler.brushes.brush import Brush
+from stippler.brushes.cells import areas_of, centroids_of
+from stippler.brushes.jitter import jitter
+from stippler.brushes.stroke import Stamp
+from stippler.drawing.dots import Dots
+from stippler.drawing.editing import Editing
+from stippler.drawing.reference import Reference
+from stippler.drawing.store import Rows
+from stippler.errors import ParameterError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(slots=True, eq=False)
+class Touch:
+    """A stamp on a drawing: the dots under the tip, and how much of the effect each gets."""
+
+    editing: Editing
+    brush: Brush
+    stamp: Stamp
+    rng: np.random.Generator
+    rows: Rows
+    weight: Floats
+    count: scatter.Count
+
+    @property
+    def position_mm(self) -> Floats:
+        """Of the dots under the tip; a copy."""
+        return np.asarray(self.editing.dots.position_mm[self.rows])
+
+    @property
+    def free(self) -> Touch:
+        """The same stamp on the free dots only."""
+        free = ~self.editing.dots.fixed[self.rows]
+        if free.all():
+            return self
+        return touch_of(self, self.rows[free], self.weight[free])
+
+    @property
+    def at_mm(self) -> tuple[float, float]:
+        """The middle of the stamp."""
+        return self.stamp.x, self.stamp.y
+
+    def share(self, name: str) -> float:
+        """Return a percentage among the brush's values, as a share."""
+        return float(self.brush.value(name)) / 100.0
+
+    def number(self, name: str) -> float:
+        """Return one of the brush's values."""
+        return float(self.brush.value(name))
+
+    @property
+    def reference(self) -> Reference:
+        """The reference, for effects that go by it."""
+        reference = self.editing.drawing.reference
+        if reference is None:
+            raise ParameterError(
+                "goes by the picture, and there is none", self.brush.name, "open a picture first"
+            )
+        return reference
+
+
+def touch_of(touch: Touch, rows: Rows, weight: Floats) -> Touch:
+    """Return a touch on other rows."""
+    return Touch(touch.editing, touch.brush, touch.stamp, touch.rng, rows, weight, touch.count)
+
+
+# --- dots come and go ---------------------------------------------------------------------------
+
+
+def add(touch: Touch) -> None:
+    """Add one dot."""
+    _insert(touch, np.array([touch.at_mm]))
+
+
+def spray(touch: Touch) -> None:
+    """Add the dots that are due."""
+    n = touch.count.take(touch.stamp.dt, touch.stamp.pressure)
+    if not n:
+        return
+    brush = touch.brush
+    points = scatter.spray(n, brush.tip, brush.radius_mm, touch.rng) + touch.at_mm
+    if brush.value("by_tone"):
+        points = points[touch.rng.random(len(points)) < size.sample(touch.reference, points)]
+    apart_mm = touch.number("apart_mm")
+    if apart_mm > 0.0 and len(points):
+        points = points[touch.editing.apart(points, apart_mm)]
+    if len(points):
+        _insert(touch, points)
+
+
+def _insert(touch: Touch, points: Floats) -> None:
+    dots = Dots.round(points, touch.number("dot_mm"))
+    dots.seed[:] = touch.rng.integers(0, 2**32, len(dots), np.uint32)
+    touch.editing.insert(dots)
+
+
+def remove(touch: Touch) -> None:
+    """Remove the nearest dot."""
+    row = touch.editing.nearest(*touch.at_mm, touch.brush.radius_mm)
+    if row is not None:
+        touch.editing.remove(np.array([row]))
+
+
+def thin(touch: Touch) -> None:
+    """Remove the dots that are due."""
+    n = touch.count.take(touch.stamp.dt, touch.stamp.pressure)
+    if n:
+        touch.editing.remove(touch.rows[scatter.choose(n, touch.weight, touch.rng)])
+
+
+def erase(touch: Touch) -> None:
+    """Remove all dots."""
+    touch.editing.remove(touch.rows)
+
+
+def fix(touch: Touch) -> None:
+    """Fix all dots."""
+    _set_fixed(touch, True)
+
+
+def unfix(touch: Touch) -> None:
+    """Free all dots."""
+    _set_fixed(touch, False)
+
+
+def _set_fixed(touch: Touch, fixed: bool) -> None:
+    rows = touch.rows[touch.editing.dots.fixed[touch.rows] != fixed]
+    touch.editing.change("fixed", rows, np.full(len(rows), fixed))
+
+
+# --- dots move ----------------------------------------------------------------------------------
+
+
+def relax(touch: Touch) -> None:
+    """Move dots towards the centroids of their cells."""
+    touch = touch.free
+    reference = touch.reference if touch.brush.value("by_tone") else None
+    centroid = centroids_of(touch.editing, touch.rows, reference)
+    share = np.minimum(touch.weight * touch.share("strength"), 1.0)[:, None]
+    old = touch.position_mm
+    touch.editing.move(touch.rows, old + share * (centroid - old))
+
+
+def shake(touch: Touch) -> None:
+    """Move dots at random."""
+    touch = touch.free
+    if not len(touch.rows):
+        return
+    scale: Floats | float
+    if touch.brush.value("measure") == "cell":
+        scale = np.sqrt(areas_of(touch.editing, touch.rows))
+    else:
+        reach = 2.0 * touch.brush.tip.reach(touch.brush.radius_mm)
+        scale = float(touch.editing.nearest_distances(touch.rows, reach).mean())
+    moved = jitter(touch.position_mm, touch.weight, scale * touch.share("amount"), touch.rng)
+    touch.editing.move(touch.rows, moved)
+
+
+def push(touch: Touch) -> None:
+    """Take dots along."""
+    touch = touch.free
+    strength = touch.share("strength")
+    step = (touch.stamp.dx * strength, touch.stamp.dy * strength)
+    touch.editing.move(touch.rows, move.push(touch.position_mm, touch.weight, step))
+
+
+def comb(touch: Touch) -> None:
+    """Draw dots into lines."""
+    touch = touch.free
+    if math.isnan(touch.stamp.direction_rad):
+        return
+    moved = move.comb(
+        touch.position_mm,
+        touch.weight,
+        touch.at_mm,
+        touch.stamp.direction_rad,
+        touch.number("teeth_mm"),
+        touch.share("strength"),
+    )
+    touch.editing.move(touch.rows, moved)
+
+
+# --- dots change their looks --------------------------------------------------------------------
+
+
+def resize(touch: Touch) -> None:
+    """Change radii."""
+    dots, rows = touch.editing.dots, touch.rows
+    radius = dots.radius_mm[rows].astype(np.float64)
+    how, amount = touch.brush.value("how"), touch.number("amount")
+    if how == "enlarge" or how == "reduce":
+        new = size.scaled(radius, touch.weight, amount if how == "enlarge" else -amount)
+    elif how == "set":
+        new = size.pulled(radius, touch.weight, touch.number("dot_mm"), 1.0)
+    else:
+        new = size.pulled(radius, touch.weight, _tone_target(touch), amount / 100.0)
+    touch.editing.change("radius_mm", rows, new.astype(np.float32))
+
+
+def _tone_target(touch: Touch) -> Floats:
+    area = areas_of(touch.editing, touch.rows)
+    limits = (size.SMALLEST_MM, size.LARGEST_MM)
+    return size.tone_radius(touch.position_mm, area, touch.reference, limits)
+
+
+def deform(touch: Touch) -> None:
+    """Change shapes."""
+    editing, rows = touch.editing, touch.rows
+    how, amount = touch.brush.value("how"), touch.share("amount")
+    if how in ("roughen", "smooth"):
+        old = editing.dots.roughness[rows].astype(np.float64)
+        new = shape.roughened(old, touch.weight, amount if how == "roughen" else -amount)
+        editing.change("roughness", rows, new.astype(np.float32))
+        return
+    direction = np.zeros(len(rows))
+    if how == "stretch":
+        found = _directions(touch)
+        if found is None:
+            return
+        direction = found
+    elongation, angle = shape.elongated(
+        editing.dots.elongation[rows].astype(np.float64),
+        editing.dots.angle_rad[rows].astype(np.float64),
+        touch.weight,
+        amount if how == "stretch" else -amount,
+        direction,
+    )
+    editing.change("elongation", rows, elongation.astype(np.float32))
+    if how == "stretch":
+        editing.change("angle_rad", rows, angle.astype(np.float32))
+
+
+def _directions(touch: Touch) -> Floats | None:
+    """Return the direction of each dot's stretch; None where the stroke has none yet."""
+    n, along = len(touch.rows), touch.brush.value("along")
+    if along == "stroke":
+        direction = touch.stamp.direction_rad
+        return None if math.isnan(direction) else np.full(n, direction)
+    if along == "angle":
+        return np.full(n, math.radians(touch.number("angle")))
+    if along == "edge":
+        return shape.edge_directions(
+            touch.reference, touch.position_mm, 0.25 * touch.brush.radius_mm
+        )
+    return shape.random_directions(touch.editing.dots.seed[touch.rows])
+
+
+EFFECTS: dict[str, Callable[[Touch], None]] = {
+    "add": add,
+    "spray": spray,
+    "remove": remove,
+    "thin": thin,
+    "erase": erase,
+    "fix": fix,
+    "unfix": unfix,
+    "relax": relax,
+    "jitter": shake,
+    "size": resize,
+    "shape": deform,
+    "push": push,
+    "comb": comb,
+}

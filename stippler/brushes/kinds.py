@@ -1,0 +1,232 @@
+"""The types of brushes: what each does, how it is paced, and its parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Rhythm = Literal["click", "arc", "time", "drag", "select"]
+Value = float | str | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One value of a brush; a choice where it has options, a yes or no where it is a bool.
+
+    Attributes
+    ----------
+    only : (str, tuple of str) or None
+        Counts only while another parameter has one of these values.
+    """
+
+    name: str
+    label: str
+    default: Value
+    tip: str
+    low: float = 0.0
+    high: float = 1.0
+    unit: str = ""
+    options: tuple[str, ...] = ()
+    only: tuple[str, tuple[str, ...]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A type of brush.
+
+    Attributes
+    ----------
+    rhythm : {"click", "arc", "time", "drag", "select"}
+        Whether it acts once a press, by arc length, by time, on what is dragged, or selects.
+    key : str
+        One letter.
+    """
+
+    name: str
+    label: str
+    key: str
+    rhythm: Rhythm
+    tip: str
+    parameters: tuple[Parameter, ...] = ()
+
+    def parameter(self, name: str) -> Parameter:
+        """Find a parameter."""
+        return next(p for p in self.parameters if p.name == name)
+
+
+_STRENGTH = Parameter("strength", "Strength", 100.0, "Share of the effect.", 1.0, 100.0, "%")
+_RADIUS = Parameter("dot_mm", "Dot radius", 0.2, "Radius of new dots in mm.", 0.02, 2.0, "mm")
+_DOTS_PER_S = Parameter("per_s", "Dots a second", 200.0, "However fast the brush moves.", 1, 5000)
+
+KINDS: tuple[Kind, ...] = (
+    Kind("add", "Add a dot", "a", "click", "Adds one dot where you click.", (_RADIUS,)),
+    Kind(
+        "spray",
+        "Spray dots",
+        "s",
+        "time",
+        "Adds dots evenly over the tip for as long as you hold.",
+        (
+            _DOTS_PER_S,
+            _RADIUS,
+            Parameter(
+                "apart_mm",
+                "Distance",
+                0.4,
+                "Least distance to other dots in mm; 0 is none.",
+                0,
+                5,
+                "mm",
+            ),
+            Parameter(
+                "by_tone", "Follow the picture", False, "Fewer dots where the picture is light."
+            ),
+        ),
+    ),
+    Kind("remove", "Remove a dot", "x", "click", "Removes the dot nearest to where you click."),
+    Kind(
+        "thin",
+        "Thin out",
+        "h",
+        "time",
+        "Removes dots at random for as long as you hold.",
+        (_DOTS_PER_S,),
+    ),
+    Kind("erase", "Erase", "e", "arc", "Removes all dots under the tip."),
+    Kind("fix", "Fix", "i", "arc", "Fixes dots: they stay where they are from now on."),
+    Kind("unfix", "Free", "u", "arc", "Frees fixed dots."),
+    Kind(
+        "relax",
+        "Relax",
+        "l",
+        "time",
+        "Evens out the spacing for as long as you hold.",
+        (
+            _STRENGTH,
+            Parameter("per_s", "Steps a second", 30.0, "Relaxation steps a second.", 1, 60),
+            Parameter(
+                "by_tone", "Follow the picture", False, "Keeps dots denser where it is darker."
+            ),
+        ),
+    ),
+    Kind(
+        "jitter",
+        "Jitter",
+        "j",
+        "arc",
+        "Shifts dots a little, at random.",
+        (
+            Parameter("amount", "Amount", 20.0, "In percent of the measure below.", 1, 200, "%"),
+            Parameter(
+                "measure",
+                "Measure",
+                "distance",
+                "The mean distance of the dots under the tip; or the root of each dot's cell "
+                "area, which moves dense regions less.",
+                options=("distance", "cell"),
+            ),
+        ),
+    ),
+    Kind(
+        "size",
+        "Size",
+        "b",
+        "arc",
+        "Makes dots larger, smaller, or a given size.",
+        (
+            Parameter(
+                "how",
+                "How",
+                "enlarge",
+                "By a percentage at each stamp, towards a value, or towards the picture's tone.",
+                options=("enlarge", "reduce", "set", "tone"),
+            ),
+            Parameter(
+                "amount",
+                "Amount",
+                5.0,
+                "Change at each stamp, in percent.",
+                0.5,
+                100,
+                "%",
+                only=("how", ("enlarge", "reduce", "tone")),
+            ),
+            Parameter(
+                "dot_mm", "Dot radius", 0.25, "In mm.", 0.02, 2.0, "mm", only=("how", ("set",))
+            ),
+        ),
+    ),
+    Kind(
+        "shape",
+        "Shape",
+        "w",
+        "arc",
+        "Deforms dots, or makes them round again.",
+        (
+            Parameter(
+                "how",
+                "How",
+                "stretch",
+                "What to change.",
+                options=("stretch", "round", "roughen", "smooth"),
+            ),
+            Parameter("amount", "Amount", 10.0, "Change at each stamp, in percent.", 1, 100, "%"),
+            Parameter(
+                "along",
+                "Along",
+                "stroke",
+                "Direction of the stretch: the stroke's own, a set angle, the edges of the "
+                "picture, or each dot's own at random.",
+                options=("stroke", "angle", "edge", "random"),
+                only=("how", ("stretch",)),
+            ),
+            Parameter(
+                "angle",
+                "Angle",
+                0.0,
+                "Clockwise from the right, in degrees.",
+                0,
+                180,
+                "°",
+                only=("along", ("angle",)),
+            ),
+        ),
+    ),
+    Kind("drag", "Drag a dot", "g", "drag", "Moves the dot nearest to where you press."),
+    Kind("push", "Push", "k", "arc", "Takes dots along with the stroke.", (_STRENGTH,)),
+    Kind(
+        "comb",
+        "Comb",
+        "c",
+        "arc",
+        "Draws dots into lines along the stroke.",
+        (
+            Parameter("strength", "Strength", 15.0, "Share of the way, a stamp.", 1, 100, "%"),
+            Parameter("teeth_mm", "Teeth", 1.0, "Distance of the lines in mm.", 0.1, 20, "mm"),
+        ),
+    ),
+    Kind(
+        "select",
+        "Select",
+        "m",
+        "select",
+        "Selects dots; Shift adds, Alt takes away.",
+        (
+            Parameter(
+                "how",
+                "Outline",
+                "rectangle",
+                "Drag a rectangle or a lasso, click a polygon's corners (Enter or a double click "
+                "closes it), or click into an area.",
+                options=("rectangle", "lasso", "polygon", "area"),
+            ),
+        ),
+    ),
+)
+
+_BY_NAME = {kind.name: kind for kind in KINDS}
+
+
+def kind_of(name: str) -> Kind:
+    """Find a type of brush by its name; KeyError if there is none."""
+    return _BY_NAME[name]

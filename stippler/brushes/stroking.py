@@ -1,0 +1,131 @@
+"""A stroke under way: samples in, changes of the drawing out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from stippler.brushes.brush import Brush
+from stippler.brushes.effects import EFFECTS, Touch
+from stippler.brushes.scatter import Count
+from stippler.brushes.stroke import PointerSample, Spacer, Stamp, Ticker, smoothing_of
+from stippler.drawing.edit import Edit
+from stippler.drawing.editing import Editing
+
+_TICKS_PER_S = 60.0
+_MOST_TICKS = 6
+"""Relaxation steps at one call; a machine that is behind drops the rest."""
+
+
+class Stroke:
+    """One press-to-release of a brush; whatever fails within it takes all of it back.
+
+    Parameters
+    ----------
+    editing : Editing
+        Not in a stroke.
+    seed : int
+        Of all that is left to chance in this stroke.
+
+    Attributes
+    ----------
+    end : PointerSample
+        The last sample.
+    """
+
+    def __init__(self, editing: Editing, brush: Brush, first: PointerSample, seed: int) -> None:
+        self._editing, self._brush = editing, brush
+        self._rng = np.random.default_rng(seed)
+        self._smoothing = smoothing_of(brush.smoothing, brush.smoothing_mm)
+        per_s = brush.value("per_s") if brush.about.rhythm == "time" else _TICKS_PER_S
+        self._count = Count(per_s)
+        step_s = 1.0 / (per_s if brush.kind == "relax" else _TICKS_PER_S)
+        self._ticker = Ticker(step_s) if brush.about.rhythm == "time" else None
+        self._spacer = Spacer(brush.spacing * brush.radius_mm)
+        self._dragged: tuple[int, float, float] | None = None
+        self._pressed = False
+        self.end = first
+        editing.begin(brush.name)
+        self.follow(first)
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether it goes on while the pointer rests."""
+        return self._ticker is not None
+
+    def follow(self, sample: PointerSample) -> None:
+        """Take where the pointer is now."""
+        self.end = sample
+        self._guarded(self._stamps(sample))
+
+    def rest(self, t: float) -> None:
+        """Let time go on."""
+        if self._ticker is not None:
+            self._guarded(self._ticker.rest(t))
+
+    def commit(self, sample: PointerSample) -> Edit:
+        """End the stroke where the pointer is."""
+        self.follow(sample)
+        if self._editing.in_stroke:
+            self._guarded(stamp for p in self._smoothing.end() for stamp in self._pace(p))
+        return self._editing.commit()
+
+    def cancel(self) -> None:
+        """Take back all of it."""
+        if self._editing.in_stroke:
+            self._editing.cancel()
+
+    def _guarded(self, stamps: Iterable[Stamp]) -> None:
+        try:
+            due = list(stamps)
+            if self._brush.kind == "relax":
+                due = due[-_MOST_TICKS:]
+            for stamp in due:
+                self._apply(stamp)
+        except BaseException:
+            self.cancel()
+            raise
+
+    def _stamps(self, sample: PointerSample) -> Iterable[Stamp]:
+        rhythm = self._brush.about.rhythm
+        if rhythm in ("click", "drag"):
+            first, self._pressed = not self._pressed, True
+            if first or rhythm == "drag":
+                yield Stamp(sample.x, sample.y, sample.pressure)
+            return
+        for point in self._smoothing.feed(sample):
+            yield from self._pace(point)
+
+    def _pace(self, point: PointerSample) -> Iterable[Stamp]:
+        return (self._ticker or self._spacer).feed(point)
+
+    def _apply(self, stamp: Stamp) -> None:
+        if self._brush.kind == "drag":
+            self._drag(stamp)
+            return
+        brush, editing = self._brush, self._editing
+        reach = brush.tip.reach(brush.radius_mm)
+        box = (stamp.x - reach, stamp.y - reach, stamp.x + reach, stamp.y + reach)
+        rows = editing.in_box(box)
+        offset = editing.dots.position_mm[rows] - (stamp.x, stamp.y)
+        weight = brush.tip.weight(offset, brush.radius_mm)
+        under = weight > 0.0
+        rows, weight = rows[under], weight[under] * stamp.pressure
+        touch = Touch(editing, brush, stamp, self._rng, rows, weight, self._count)
+        EFFECTS[brush.kind](touch)
+
+    def _drag(self, stamp: Stamp) -> None:
+        """Take hold of the nearest free dot; then take it along."""
+        dots = self._editing.dots
+        if self._dragged is None:
+            row = self._editing.nearest(stamp.x, stamp.y, self._brush.radius_mm)
+            if row is None or dots.fixed[row]:
+                self._dragged = (-1, 0.0, 0.0)
+                return
+            x, y = dots.position_mm[row]
+            self._dragged = (int(dots.id[row]), x - stamp.x, y - stamp.y)
+        held, dx, dy = self._dragged
+        if held >= 0:
+            rows = self._editing.rows(np.array([held]))
+            self._editing.move(rows, np.array([(stamp.x + dx, stamp.y + dy)]))

@@ -1,0 +1,174 @@
+"""Undo and redo without limit: edits in memory up to a budget, older ones on disk."""
+
+from __future__ import annotations
+
+import logging
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from stippler.drawing.edit import Edit
+
+BUDGET_BYTES = 256 * 2**20
+
+_log = logging.getLogger("stippler")
+
+
+@dataclass(slots=True, eq=False)
+class Step:
+    """One line of the history.
+
+    Attributes
+    ----------
+    edit : Edit or None
+        None while the step is still being made, or lies on disk.
+    """
+
+    label: str
+    n_dots: int = 0
+    n_bytes: int = 0
+    edit: Edit | None = None
+    path: Path | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the step is still being made."""
+        return self.edit is None and self.path is None
+
+
+class History:
+    """Steps that were done, and steps that were undone and can be done again.
+
+    Parameters
+    ----------
+    budget_bytes : int
+        Of memory; beyond it the steps furthest from now lie in a temporary folder, which goes
+        when the history does.
+
+    Attributes
+    ----------
+    n_bytes : int
+        Memory the steps take.
+    n_done : int
+        The first `n_done` of `steps` are in effect.
+    """
+
+    def __init__(self, budget_bytes: int = BUDGET_BYTES) -> None:
+        self._budget = budget_bytes
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._n_files = 0
+        self._can_spill = True
+        self.n_bytes = 0
+        self.steps: list[Step] = []
+        self.n_done = 0
+
+    @property
+    def undone(self) -> Step | None:
+        """The step that undoing would take back."""
+        return self.steps[self.n_done - 1] if self.n_done else None
+
+    @property
+    def redone(self) -> Step | None:
+        """The step that redoing would do again."""
+        return self.steps[self.n_done] if self.n_done < len(self.steps) else None
+
+    def push(self, edit: Edit) -> None:
+        """Add a step that has just been done; what was undone is gone."""
+        self.fill(self.open(edit.label), edit)
+
+    def open(self, label: str) -> Step:
+        """Add a step that is still being made; what was undone is gone."""
+        for step in self.steps[self.n_done :]:
+            self._forget(step)
+        del self.steps[self.n_done :]
+        step = Step(label)
+        self.steps.append(step)
+        self.n_done += 1
+        return step
+
+    def fill(self, step: Step, edit: Edit) -> None:
+        """Give an open step its edit; one that changes nothing is taken out of the history."""
+        if edit.is_empty:
+            self.n_done -= self.steps.index(step) < self.n_done
+            self.steps.remove(step)
+            return
+        step.label, step.n_dots, step.n_bytes = edit.label, edit.n_dots, edit.n_bytes
+        self._hold(step, edit)
+        self._spill()
+
+    def undo(self) -> Edit | None:
+        """Return the edit that takes the last step back, and count it as undone."""
+        if not self.n_done:
+            return None
+        edit = self._edit(self.steps[self.n_done - 1]).inverse()
+        self.n_done -= 1
+        self._spill()
+        return edit
+
+    def redo(self) -> Edit | None:
+        """Return the edit that does the last undone step again, and count it as done."""
+        if self.redone is None:
+            return None
+        edit = self._edit(self.redone)
+        self.n_done += 1
+        self._spill()
+        return edit
+
+    def close(self) -> None:
+        """Forget all, and what lies on disk."""
+        self.steps, self.n_done, self.n_bytes = [], 0, 0
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
+    def _hold(self, step: Step, edit: Edit) -> None:
+        step.edit = edit
+        self.n_bytes += step.n_bytes
+
+    def _edit(self, step: Step) -> Edit:
+        if step.edit is not None:
+            return step.edit
+        if step.path is None:
+            raise ValueError("a step that is still being made cannot be undone")
+        with np.load(step.path) as arrays:
+            edit = Edit.from_arrays(step.label, dict(arrays))
+        self._forget(step)
+        self._hold(step, edit)
+        return edit
+
+    def _spill(self) -> None:
+        """Write the steps furthest from now to disk until the rest fits the budget."""
+        if self.n_bytes <= self._budget:
+            return
+        now = self.n_done - 0.5
+        for i in sorted(range(len(self.steps)), key=lambda i: abs(i - now), reverse=True):
+            step = self.steps[i]
+            if self.n_bytes <= self._budget or not self._can_spill or abs(i - now) < 1.0:
+                return
+            if step.edit is not None:
+                self._write(step, step.edit)
+
+    def _write(self, step: Step, edit: Edit) -> None:
+        try:
+            if self._folder is None:
+                self._folder = tempfile.TemporaryDirectory(prefix="stippler-history-")
+            path = Path(self._folder.name) / f"{self._n_files}.npz"
+            np.savez(path, **dict(edit.arrays()))  # type: ignore[arg-type]
+        except OSError as error:
+            self._can_spill = False
+            _log.warning("the history stays in memory: it cannot be written (%s)", error)
+            return
+        self._n_files += 1
+        self._forget(step)
+        step.path = path
+
+    def _forget(self, step: Step) -> None:
+        """Let go of a step's edit, in memory and on disk."""
+        if step.edit is not None:
+            step.edit = None
+            self.n_bytes -= step.n_bytes
+        if step.path is not None:
+            step.path.unlink(missing_ok=True)
+            step.path = None

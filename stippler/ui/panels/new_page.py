@@ -1,0 +1,73 @@
+"""The dialog for a new page."""
+
+from __future__ import annotations
+
+import math
+
+from imgui_bundle import imgui
+
+from stippler.drawing.drawing import MAX_PAGE_MM, Page
+from stippler.ui.session import Session
+from stippler.ui.widgets import Widgets
+
+_TITLE = "New page"
+_SIZES = (("A4", 210.0, 297.0), ("A5", 148.0, 210.0), ("A6", 105.0, 148.0))
+
+
+class NewPage:
+    """Asks for the size of a page, and begins a drawing on it."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._wanted = False
+        self.is_open = False
+        self.width_mm, self.height_mm = 148.0, 210.0
+
+    def ask(self) -> None:
+        """Open the dialog in the next frame."""
+        self._wanted = True
+
+    def draw(self, widgets: Widgets) -> None:
+        """Draw the dialog, if it is open."""
+        if self._wanted:
+            imgui.open_popup(_TITLE)
+            self._wanted = False
+        center = imgui.get_main_viewport().get_center()
+        imgui.set_next_window_pos(center, imgui.Cond_.appearing, (0.5, 0.5))
+        imgui.set_next_window_size((300.0 * widgets.scale, 0.0))
+        self.is_open = imgui.begin_popup_modal(_TITLE, None, imgui.WindowFlags_.no_resize)[0]
+        if self.is_open:
+            self._draw_fields(widgets)
+            self._draw_verbs(widgets)
+            imgui.end_popup()
+
+    def _draw_fields(self, widgets: Widgets) -> None:
+        for k, (name, width_mm, height_mm) in enumerate(_SIZES):
+            if k:
+                imgui.same_line()
+            if widgets.button(name, f"{width_mm:g} × {height_mm:g} mm."):
+                self.width_mm, self.height_mm = width_mm, height_mm
+        imgui.same_line()
+        if widgets.button("Turn page", "Exchanges width and height."):
+            self.width_mm, self.height_mm = self.height_mm, self.width_mm
+        self.width_mm = _length(widgets, "Page width", self.width_mm)
+        self.height_mm = _length(widgets, "Page height", self.height_mm)
+
+    def _draw_verbs(self, widgets: Widgets) -> None:
+        gap = 8.0 * widgets.scale
+        width = (imgui.get_content_region_avail().x - gap) / 2
+        if widgets.button(
+            "Begin", "The drawing that is open is closed.", width=width, primary=True
+        ):
+            self._session.new(Page(self.width_mm, self.height_mm))
+            imgui.close_current_popup()
+        imgui.same_line(0.0, gap)
+        if widgets.button("Cancel", "Keep the drawing that is open.", width=width) or (
+            imgui.is_key_pressed(imgui.Key.escape)
+        ):
+            imgui.close_current_popup()
+
+
+def _length(widgets: Widgets, label: str, value: float) -> float:
+    typed = widgets.length(label, value, "In mm.")
+    return min(max(typed, 1.0), MAX_PAGE_MM) if math.isfinite(typed) else value

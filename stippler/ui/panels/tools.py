@@ -1,0 +1,63 @@
+"""The strip of tools at the left edge of the window."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from stippler.brushes.kinds import KINDS
+from stippler.ui.commands import Commands
+from stippler.ui.icons import Pen, draw_icon
+from stippler.ui.theme import STATUS_HEIGHT, STRIP_WIDTH
+from stippler.ui.tools.toolbox import Toolbox
+from stippler.ui.widgets import Widgets
+
+_BUTTON, _ICON = 34.0, 20.0
+_FLAGS = (
+    imgui.WindowFlags_.no_decoration
+    | imgui.WindowFlags_.no_docking
+    | imgui.WindowFlags_.no_move
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.no_nav
+)
+
+
+def draw_tools(widgets: Widgets, toolbox: Toolbox, commands: Commands) -> None:
+    """Draw an icon for each type of brush."""
+    viewport, scale = imgui.get_main_viewport(), widgets.scale
+    imgui.set_next_window_pos(viewport.pos)
+    imgui.set_next_window_size((STRIP_WIDTH * scale, viewport.size.y - STATUS_HEIGHT * scale))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, (6.0 * scale, 8.0 * scale))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 3.0 * scale))
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+    imgui.begin("##tools", None, _FLAGS & ~imgui.WindowFlags_.no_scrollbar)
+    imgui.pop_style_var(1)
+    used = toolbox.brush.kind if toolbox.brush else ""
+    _draw_tool(widgets, commands, "", "tool.none", used == "", "The pointer only looks around.")
+    for kind in KINDS:
+        _draw_tool(widgets, commands, kind.name, f"tool.{kind.name}", used == kind.name, kind.tip)
+    imgui.end()
+    imgui.pop_style_var(2)
+
+
+def _draw_tool(
+    widgets: Widgets, commands: Commands, kind: str, name: str, used: bool, tip: str
+) -> None:
+    side, command = _BUTTON * widgets.scale, commands[name]
+    corner = imgui.get_cursor_screen_pos()
+    if imgui.invisible_button(f"##{name}", (side, side)):
+        command.run()
+    draw, theme = imgui.get_window_draw_list(), widgets.theme
+    if used or imgui.is_item_hovered():
+        fill = theme.accent if used else theme.hovered
+        end = (corner.x + side, corner.y + side)
+        draw.add_rect_filled(corner, end, _packed(fill), 6.0 * widgets.scale)
+    icon = _ICON * widgets.scale
+    gap = (side - icon) / 2
+    colour = _packed(theme.on_accent if used else theme.text)
+    draw_icon(kind, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
+    widgets.note(command.label)
+    widgets.tip(f"{command.hint}\n{tip}")
+
+
+def _packed(colour: tuple[float, float, float]) -> int:
+    return int(imgui.color_convert_float4_to_u32((*colour, 1.0)))

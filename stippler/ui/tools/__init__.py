@@ -1,0 +1,1 @@
+"""What the pointer does with the chosen brush: small states, without a window, GL or ImGui."""

@@ -1,0 +1,222 @@
+"""Painting in the whole editor, without a display: scripted mouse and keys."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stippler.brushes import effects
+from stippler.drawing.dots import Dots
+from stippler.ui.layout import BRUSH, HISTORY
+from stippler.ui.messages import ERROR
+
+NAMES = [f.name for f in fields(Dots)]
+
+
+@pytest.fixture(autouse=True)
+def settings_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "config"))
+    return tmp_path / "config"
+
+
+def same(a: Dots, b: Dots) -> bool:
+    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in NAMES)
+
+
+def opened(desk, picture: Path):
+    desk.host.drop(picture)
+    desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
+    desk.host.settle()
+    return desk.app.session.editing
+
+
+def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
+    editor = desk.app.editor
+    x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
+    origin = editor.pointer._origin_px
+    return float(x + origin[0]), float(y + origin[1])
+
+
+def paint(desk, start: tuple[float, float], end: tuple[float, float]) -> None:
+    desk.host.drag(on_screen(desk, *start), on_screen(desk, *end), "left")
+
+
+def test_a_tool_is_clicked_a_stroke_painted_undone_and_done_again(desk, picture: Path) -> None:
+    editing = opened(desk, picture)
+    start = editing.dots.copy()
+    shot = desk.host.screenshot()
+    desk.host.click("Erase")
+    assert desk.app.editor.painting.toolbox.brush.kind == "erase"
+    paint(desk, (45, 45), (75, 45))
+    assert len(editing.dots) < len(start)
+    erased = editing.dots.copy()
+    desk.host.move(*on_screen(desk, 110, 80))
+    desk.host.settle()
+    painted = desk.host.screenshot()
+    x, y = (round(v) for v in on_screen(desk, 60, 45))
+    assert painted[y - 3 : y + 3, x - 20 : x + 20].mean() > 250 > shot[y - 3 : y + 3].mean()
+    desk.host.key("z", ctrl=True)
+    assert same(editing.dots, start)
+    desk.host.key("y", ctrl=True)
+    assert same(editing.dots, erased)
+    desk.app.editor.show_panel(HISTORY)
+    desk.host.settle()
+    desk.host.click("step 0")
+    assert same(editing.dots, start)
+    desk.host.click("Redo")
+    assert same(editing.dots, erased)
+
+
+def test_escape_within_a_stroke_takes_it_back(desk, picture: Path) -> None:
+    editing = opened(desk, picture)
+    start = editing.dots.copy()
+    desk.host.key("k")
+    desk.host.move(*on_screen(desk, 60, 45))
+    desk.host.press("left")
+    desk.host.move(*on_screen(desk, 70, 45))
+    assert not same(editing.dots, start)
+    desk.host.key("escape")
+    desk.host.release("left")
+    assert same(editing.dots, start)
+    assert not editing.history.steps
+
+
+def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None:
+    editing = opened(desk, picture)
+    desk.host.key("b")
+    desk.host.settle()
+    renderer = desk.app.editor.canvas._renderer()
+    uploads: list[int] = []
+    update = renderer.update_dots
+    monkeypatch.setattr(
+        renderer, "update_dots", lambda d, rows, s: (uploads.append(len(rows)), update(d, rows, s))
+    )
+    monkeypatch.setattr(renderer, "set_dots", lambda *_: pytest.fail("all was uploaded"))
+    paint(desk, (60, 45), (63, 45))
+    assert uploads
+    assert 0 < max(uploads) < len(editing.dots) / 4
+
+
+def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
+    editing = opened(desk, picture)
+    session = desk.app.session
+    start = editing.dots.copy()
+    desk.host.fill("Iterations", "100000")
+    desk.host.click("Relax all")
+    desk.host.until(lambda: session.done > 2, "some steps")
+    desk.host.key("k")
+    paint(desk, (60, 45), (66, 45))
+    assert session.relaxing
+    edit = editing.history.steps[-1].edit
+    assert edit is not None
+    change = edit.changes["position_mm"]
+    at = session.done
+    desk.host.until(lambda: session.done > at + 3, "more steps")
+    assert np.array_equal(editing.dots.position_mm[editing.rows(change.ids)], change.after)
+    desk.host.key("z", ctrl=True)  # the stroke
+    assert session.relaxing
+    desk.host.key("z", ctrl=True)  # the run, which ends
+    assert not session.busy
+    assert same(editing.dots, start)
+
+
+def test_a_new_page_is_painted_on(desk) -> None:
+    desk.host.key("s")
+    desk.host.drag((640, 300), (660, 300), "left")
+    assert "no page" in desk.host.said()
+    desk.host.key("n", ctrl=True)
+    desk.host.fill("Page width", "80")
+    desk.host.fill("Page height", "60")
+    desk.host.click("Begin")
+    desk.host.until(lambda: desk.app.session.paintable, "the page")
+    desk.host.settle()
+    page = desk.app.session.drawing.page
+    assert (page.width_mm, page.height_mm) == (80, 60)
+    assert desk.app.session.reference is None
+    desk.host.key("a")
+    desk.host.click(on_screen(desk, 20, 30))
+    desk.host.click(on_screen(desk, 40, 30))
+    dots = desk.app.session.editing.dots
+    assert np.allclose(dots.position_mm, [(20, 30), (40, 30)], atol=0.1)
+    desk.host.move(*on_screen(desk, 70, 50))
+    desk.host.settle()
+    x, y = (round(v) for v in on_screen(desk, 20, 30))
+    assert desk.host.screenshot()[y, x].mean() < 128
+
+
+def test_a_failing_brush_is_told_and_the_editor_lives_on(desk, picture: Path, monkeypatch) -> None:
+    editing = opened(desk, picture)
+    start = editing.dots.copy()
+
+    def broken(touch: object) -> None:
+        raise RuntimeError("on purpose")
+
+    monkeypatch.setitem(effects.EFFECTS, "jitter", broken)
+    desk.host.key("j")
+    paint(desk, (60, 45), (66, 45))
+    assert same(editing.dots, start)
+    assert desk.app.session.messages.log[-1].level == ERROR
+    assert "on purpose" in desk.host.said()
+    desk.host.key("x")
+    desk.host.click(on_screen(desk, 60, 45))
+    assert len(editing.dots) == len(start) - 1
+
+
+def test_a_selection_is_made_and_worked_on(desk, picture: Path) -> None:
+    editing = opened(desk, picture)
+    n = len(editing.dots)
+    desk.host.key("m")
+    paint(desk, (40, 30), (80, 60))
+    painting = desk.app.editor.painting
+    chosen = painting.n_selected
+    assert chosen > 0
+    desk.app.editor.show_panel(BRUSH)
+    desk.host.settle()
+    for label in ("Fix dots", "Free dots", "Relax dots", "Jitter dots", "Larger", "Smaller"):
+        desk.host.click(label)
+    desk.host.click("Duplicate")
+    assert len(editing.dots) == n + chosen
+    desk.host.key("delete")
+    assert len(editing.dots) == n
+    assert len(editing.history.steps) == 8
+    for _ in range(8):
+        desk.host.key("z", ctrl=True)
+    assert len(editing.dots) == n
+    desk.host.key("a", ctrl=True)
+    assert painting.n_selected == n
+    desk.host.key("escape")
+    assert painting.n_selected == 0
+
+
+def test_the_brush_panel_changes_the_brush_and_brushes_are_kept(
+    desk, settings_folder: Path
+) -> None:
+    toolbox = desk.app.editor.painting.toolbox
+    for brush in list(toolbox.brushes):
+        desk.host.click(brush.about.label)
+        assert toolbox.brush.kind == brush.kind
+        assert desk.host.shown("Name")
+    desk.host.click("Jitter")
+    desk.host.click("Copy brush")
+    desk.host.click("Rope")
+    desk.host.key("right_bracket")
+    assert (toolbox.brush.name, toolbox.brush.smoothing) == ("Jitter 2", "rope")
+    assert toolbox.brush.radius_mm > 4
+    toolbox.save()
+    assert "Jitter 2" in (settings_folder / "brushes.json").read_text()
+
+
+def test_stippling_again_is_a_step_that_can_be_taken_back(desk, picture: Path) -> None:
+    editing = opened(desk, picture)
+    first = editing.dots.copy()
+    desk.host.fill("Number", "150")
+    desk.host.click("Start")
+    desk.host.until(lambda: not desk.app.session.busy, "the drawing")
+    desk.host.settle()
+    assert desk.app.session.editing is editing
+    assert len(editing.dots) < len(first)
+    desk.host.key("z", ctrl=True)
+    assert same(editing.dots, first)
