@@ -145,7 +145,7 @@ def find_in_circle(
     dot_of_slot: I4,
     found: I4,
 ) -> int:
-    """List the dots of all compartments in a circle; return how many, the list holding the first."""
+    """List the dots of all compartments in a circle; return how many there are."""
     n = 0
     for c in range(len(grid_int)):
         x0, y0, x1, y1 = grid_real[c, 4], grid_real[c, 5], grid_real[c, 6], grid_real[c, 7]
