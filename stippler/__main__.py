@@ -1,5 +1,5 @@
 """`python -m stippler`."""
 
-from stippler.cli import main
+from stippler.cli import program
 
-main()
+program()

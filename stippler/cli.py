@@ -221,6 +221,21 @@ def main() -> None:
     sys.exit(status or 0)
 
 
+def program() -> None:
+    """Run `main` as a process; a render ends without taking the interpreter apart.
+
+    Numba's machine code takes half a second to be disposed of, and all files are closed by then.
+    """
+    try:
+        main()
+    except SystemExit as stop:
+        if sys.argv[1:2] != ["render"]:
+            raise
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(int(stop.code or 0))
+
+
 def _fail(message: str, status: int, do: str = "") -> int:
     line = f"stippler: {message.rstrip('.')}{'; ' + do if do else ''}"
     typer.echo(" ".join(line.split()), err=True)
