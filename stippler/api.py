@@ -48,6 +48,9 @@ def stipple(
     seed: int = 1,
     tone: Tone = "linear",
     first_dots: str = "pulse-density",
+    growth: str = "circular",
+    start: str = "top",
+    weighted: bool = True,
 ) -> Drawing:
     """Turn a picture into a stipple drawing.
 
@@ -69,7 +72,14 @@ def stipple(
     tone : {"linear", "perceptual"}
         Whether ink replaces the picture's light or its encoded values.
     first_dots : str
-        One of `stippler.stippling.stipple.FIRST_DOTS`.
+        One of `stippler.stippling.plan.FIRST_DOTS`.
+
+    growth : {"circular", "triangular"}
+        How the regions of pulse-density modulation grow.
+    start : {"top", "border"}
+        Where pulse-density modulation begins.
+    weighted : bool
+        Relax by the tone; False is the paper's form, whose light parts fill up.
 
     Returns
     -------
@@ -92,6 +102,9 @@ def stipple(
         iterations=iterations,
         seed=seed,
         first_dots=first_dots,
+        growth=growth,
+        start=start,
+        weighted=weighted,
     )
     return draw(image, plan, tone=tone, width_mm=width)[0]
 

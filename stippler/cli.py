@@ -45,7 +45,17 @@ Seed = Annotated[int, typer.Option(help="Same seed, same drawing.")]
 ToneOption = Annotated[
     str, typer.Option(metavar="linear|perceptual", help="Ink for light, or for the file's numbers.")
 ]
-FirstDots = Annotated[str, typer.Option(metavar="METHOD", help="How the first dots are set.")]
+FirstDots = Annotated[
+    str,
+    typer.Option(metavar="METHOD", help="pulse-density, floyd-steinberg, random or hexagonal."),
+]
+Growth = Annotated[
+    str, typer.Option(metavar="circular|triangular", help="How pulse-density regions grow.")
+]
+Start = Annotated[str, typer.Option(metavar="top|border", help="Where pulse-density begins.")]
+Unweighted = Annotated[
+    bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
+]
 
 
 def _version(shown: bool) -> None:
@@ -75,9 +85,21 @@ def edit(
     seed: Seed = 1,
     tone: ToneOption = "linear",
     first_dots: FirstDots = "pulse-density",
+    growth: Growth = "circular",
+    start: Start = "top",
+    unweighted: Unweighted = False,
 ) -> None:
     """Open the editor."""
-    plan = _plan(dots, size_range, iterations, seed, first_dots)
+    plan = _plan(
+        n_dots=dots,
+        size_range_mm=_size_range(size_range),
+        iterations=iterations,
+        seed=seed,
+        first_dots=first_dots,
+        growth=growth,
+        start=start,
+        weighted=not unweighted,
+    )
     _check_page(tone, width)
     if file is not None:
         from stippler.files.picture import check_picture
@@ -102,13 +124,25 @@ def render(
     tone: ToneOption = "linear",
     size_range: SizeRange = None,
     first_dots: FirstDots = "pulse-density",
+    growth: Growth = "circular",
+    start: Start = "top",
+    unweighted: Unweighted = False,
 ) -> None:
     """Turn a picture into a drawing, without a window."""
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
     from stippler.export import check_output
 
     check_output(output, dpi)
-    plan = _plan(dots, size_range, iterations, seed, first_dots)
+    plan = _plan(
+        n_dots=dots,
+        size_range_mm=_size_range(size_range),
+        iterations=iterations,
+        seed=seed,
+        first_dots=first_dots,
+        growth=growth,
+        start=start,
+        weighted=not unweighted,
+    )
     _check_page(tone, width)
     from stippler.progress import stages_shown
 
@@ -154,18 +188,10 @@ def _sample() -> Path:
     return assets() / "samples" / "ammonite.png"
 
 
-def _plan(
-    dots: int | None, size_range: str | None, iterations: int, seed: int, first_dots: str
-) -> Plan:
+def _plan(**values: Any) -> Plan:
     from stippler.stippling.plan import Plan
 
-    return Plan(
-        n_dots=dots,
-        size_range_mm=_size_range(size_range),
-        iterations=iterations,
-        seed=seed,
-        first_dots=first_dots,
-    )
+    return Plan(**values)
 
 
 def _size_range(text: str | None) -> tuple[float, float] | None:

@@ -82,6 +82,19 @@ def test_another_seed_is_another_drawing(picture, tmp_path):
     assert (tmp_path / "1.csv").read_bytes() != (tmp_path / "2.csv").read_bytes()
 
 
+def test_every_way_of_making_is_another_drawing(picture, tmp_path):
+    ways = [[], ["--growth", "triangular"], ["--start", "border"], ["--unweighted"],
+            ["--first-dots", "floyd-steinberg"], ["--first-dots", "random"],
+            ["--first-dots", "hexagonal"], ["--tone", "perceptual"]]  # fmt: skip
+    files = set()
+    for k, way in enumerate(ways):
+        out = tmp_path / f"{k}.csv"
+        result = run("render", picture, "-o", out, "--dots", 600, "--iterations", 3, *way)
+        assert result.returncode == 0, result.stderr
+        files.add(out.read_bytes())
+    assert len(files) == len(ways)
+
+
 def test_render_csv_has_the_dots_asked_for_on_the_page(picture, tmp_path):
     out = tmp_path / "dots.csv"
     result = run("render", picture, "-o", out, "--dots", 2000, "--width", 80, "--iterations", 5)
@@ -132,6 +145,8 @@ def test_render_png_has_its_size_and_resolution(picture, tmp_path):
         (["--size-range", "nan:1"], ["size range"]),
         (["--tone", "loud"], ["loud", "linear or perceptual"]),
         (["--first-dots", "magic"], ["magic", "pulse-density"]),
+        (["--growth", "square"], ["square", "circular"]),
+        (["--start", "middle"], ["middle", "border"]),
         (["--nonsense"], ["--nonsense"]),
     ],
 )

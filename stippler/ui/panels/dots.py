@@ -7,13 +7,13 @@ from typing import Any
 
 from imgui_bundle import imgui
 
+from stippler.stippling.plan import FIRST_DOTS, GROWTHS, STARTS
 from stippler.ui import work
 from stippler.ui.commands import Commands
 from stippler.ui.session import Session
 from stippler.ui.theme import ICON_DICE, ICON_PAUSE, ICON_PLAY, ICON_STOP
 from stippler.ui.widgets import Widgets
 
-_FIRST_DOTS = ("pulse-density", "floyd-steinberg", "random", "hexagonal")
 _FIRST_DOTS_LABELS = ("Pulse density", "Floyd–Steinberg", "Random", "Hexagonal")
 _RADII_MM = (0.02, 2.0)  # what the slider offers; typing takes more
 _USUAL_RANGE_MM = (0.12, 0.24)
@@ -39,15 +39,27 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     chosen = widgets.choice(
         "First dots",
         _FIRST_DOTS_LABELS,
-        _FIRST_DOTS.index(plan.first_dots),
+        FIRST_DOTS.index(plan.first_dots),
         "How the dots are set before they relax. Pulse density follows the picture best.",
     )
-    changes["first_dots"] = _FIRST_DOTS[chosen]
+    changes["first_dots"] = FIRST_DOTS[chosen]
+    if plan.first_dots == "pulse-density":
+        _draw_pulses(widgets, session, changes)
     changes["iterations"] = widgets.number(
         "Iterations",
         plan.iterations,
         "Relaxation steps: each makes the spacing more even. 10 to 20 suffice.",
     )
+    by_tone = widgets.segments(
+        "Relax",
+        ("By tone", "Evenly"),
+        int(not plan.weighted),
+        (
+            "Dots move to the centre of mass of their cells: dark parts stay dense.",
+            "Dots move to the middle of their cells, as in the paper: light parts fill up.",
+        ),
+    )
+    changes["weighted"] = by_tone == 0
     _draw_seed(widgets, session, changes)
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
     if changed:
@@ -55,6 +67,23 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     imgui.dummy((0.0, 2.0 * widgets.scale))
     _draw_buttons(widgets, session, commands)
     _draw_progress(widgets, session)
+
+
+def _draw_pulses(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    plan = session.plan
+    growth = widgets.segments(
+        "Regions",
+        tuple(name.capitalize() for name in GROWTHS),
+        GROWTHS.index(plan.growth),
+        ("Each dot's region grows as a disc.", "Each dot's region grows as a triangle."),
+    )
+    start = widgets.segments(
+        "Begin at",
+        tuple(name.capitalize() for name in STARTS),
+        STARTS.index(plan.start),
+        ("The page is filled from its top.", "The outermost dots line up with the ink's border."),
+    )
+    changes["growth"], changes["start"] = GROWTHS[growth], STARTS[start]
 
 
 def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
