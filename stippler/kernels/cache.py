@@ -51,7 +51,8 @@ def _with_imports(path: Path) -> set[Path]:
 def _digest(sources: Iterable[Path]) -> str:
     digest = hashlib.sha256(f"numba {metadata.version('numba')}".encode())
     for source in sorted(sources):
-        digest.update(_text(source).encode())
+        # numba itself compares a source's time, so what differs in time alone is another too
+        digest.update(f"{source} {source.stat().st_mtime_ns} {_text(source)}".encode())
     return digest.hexdigest()[:16]
 
 

@@ -42,3 +42,13 @@ def test_the_mark_changes_with_every_file(house):
 def test_the_folder_can_be_moved(house):
     assert cache.cache_root() == house / "cache"
     assert folders(house)["top"].parent == house / "cache"
+
+
+def test_two_installations_do_not_share_a_mark(house, tmp_path_factory, monkeypatch):
+    before = cache.all_digest()
+    twin = tmp_path_factory.mktemp("twin")
+    for source in house.glob("*.py"):
+        (twin / source.name).write_text(source.read_text())
+    monkeypatch.setattr(cache, "_HERE", twin)
+    cache._text.cache_clear()
+    assert cache.all_digest() != before
