@@ -8,6 +8,7 @@ started.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -27,18 +28,21 @@ config: Any = numba.core.config  # its names appear at run time
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 _INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
+_setting = threading.Lock()  # window and worker import kernels at the same time
+
 ZERO: Any = np.int64(0)
 """Where a kernel counts from: after a plain 0 numba compiles what it calls once more for it."""
 
 
 def kernel(function: Function) -> Function:
     """Compile a kernel on first use and keep its machine code on disk."""
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(module_folder(function.__code__.co_filename))
-    try:
-        compiled: Function = numba.njit(cache=True, **_OPTIONS)(function)
-    finally:
-        config.CACHE_DIR = before
+    with _setting:
+        before = config.CACHE_DIR
+        config.CACHE_DIR = str(module_folder(function.__code__.co_filename))
+        try:
+            compiled: Function = numba.njit(cache=True, **_OPTIONS)(function)
+        finally:
+            config.CACHE_DIR = before
     return compiled
 
 
