@@ -34,11 +34,14 @@ def until(condition: Callable[[], bool], what: str) -> None:
 
 @pytest.fixture(scope="module")
 def display() -> Iterator[str]:
-    """An X server on a display number that it finds free."""
+    """An X server on a display number that it finds free.
+
+    It must not start anew when the last window is closed: the next would meet it half way.
+    """
     reads, writes = os.pipe()
     screen = f"{SIZE[0]}x{SIZE[1]}x24"
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writes), "-screen", "0", screen, "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(writes), "-screen", "0", screen, "-nolisten", "tcp", "-noreset"],
         pass_fds=[writes],
         stderr=subprocess.DEVNULL,
     )
@@ -102,6 +105,7 @@ class Desk:
         return bool(np.abs(seen - np.array(colour)).max() < 0.03)
 
     def title(self) -> str:
+        assert self.process.poll() is None, f"it ended: {self.process.communicate()[1]}"
         window = self.xdotool("search", "--name", "Stippler").partition("\n")[0]
         return self.xdotool("getwindowname", window) if window else ""
 
@@ -200,7 +204,7 @@ def test_no_display_is_one_line(picture: Path) -> None:
 def test_no_opengl_is_one_line(picture: Path) -> None:
     reads, writes = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writes), "-extension", "GLX", "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(writes), "-extension", "GLX", "-nolisten", "tcp", "-noreset"],
         pass_fds=[writes],
         stderr=subprocess.DEVNULL,
     )
