@@ -16,9 +16,9 @@ from stippler.drawing.style import Style
 from stippler.errors import ParameterError
 from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress, notes_on, stages
+from stippler.units import DEFAULT_WIDTH_MM
 
 Tone = Literal["linear", "perceptual"]
-DEFAULT_WIDTH_MM = 148.0  # A5
 
 
 class Drawing(_Drawing):

@@ -14,11 +14,10 @@ from typer.exceptions import TyperException
 
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.lean import skip_blas
+from stippler.units import DEFAULT_WIDTH_MM
 
 if TYPE_CHECKING:
     from stippler.stippling.plan import Plan
-
-DEFAULT_WIDTH_MM = 148.0  # A5
 
 
 _INTERRUPTED = 130

@@ -43,7 +43,3 @@ class OutputError(StipplerError, OSError):
 
 class DisplayError(StipplerError):
     """No window or no OpenGL where one is needed."""
-
-
-class Cancelled(Exception):  # noqa: N818 - a request, not an error
-    """Raised inside long work when the person has asked it to stop."""

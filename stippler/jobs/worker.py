@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from stippler.errors import Cancelled, StipplerError
+from stippler.errors import StipplerError
 
 Result = TypeVar("Result")
 
@@ -145,8 +145,6 @@ class Worker(Generic[Result]):
                     if close is not None:
                         close()
                     break
-        except Cancelled:
-            ended = "stopped"
         except StipplerError as error:
             ended, failure = "failed", error
         except MemoryError:
