@@ -21,7 +21,8 @@ from benchmarks.figures import Figure, median_s
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.pens import Preview, ShapeChange
+from stippler.drawing.preview import Footprint, Preview
+from stippler.drawing.shape_change import ShapeChange, Step
 from stippler.files.svg import svg_chunks
 from stippler.headless import open_context
 from stippler.kernels.dot_shape import bezier_outlines
@@ -130,7 +131,8 @@ def _zoomed(stage: _Stage, repeats: int) -> Figure:
 
 def _preview_cost(stage: _Stage, repeats: int) -> Figure:
     """Time what a preview asks of the CPU: its uniforms."""
-    tip = Preview(ShapeChange(radius=(1.1, 0.0)), "tip", (100, 60), 10.0)
+    under = Footprint((100.0, 60.0), (0.1, 0.0, 0.0, 0.1), 10.0, hardness=0.5)
+    tip = Preview(ShapeChange(radius=Step(1.1)), under)
 
     def both() -> None:
         stage.renderer.set_preview(tip)

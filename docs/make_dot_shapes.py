@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -54,7 +54,7 @@ def plate() -> tuple[Dots, list[tuple[float, float, str]]]:
         parts.append(dots([(x, y)], 5.0, 1.0, 0.0, 0.5, 900 + k))
     for k, pen in enumerate(PENS):
         left = 8.0 + 48.5 * k
-        words.append((left, PEN_TOP + 3, pen.name))
+        words.append((left, PEN_TOP + 3, pen.label))
         parts += [samples(pen, left), tone(pen, left, PEN_TOP + 42)]
     together = {f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Dots)}
     return Dots(**together), words
@@ -72,10 +72,7 @@ def dots(
 
 def drawn_with(pen: Pen, made: Dots) -> Dots:
     """Return dots as a pen makes them."""
-    shapes = pen.shapes(made)
-    made.elongation, made.angle_rad = shapes.elongation, shapes.angle_rad
-    made.roughness = shapes.roughness
-    return made
+    return replace(made, **pen.change.of(made))  # type: ignore[arg-type]
 
 
 def samples(pen: Pen, left: float) -> Dots:

@@ -11,19 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
-from stippler.drawing.pens import Preview
+from stippler.drawing.preview import Preview
+from stippler.drawing.shape_change import MAX_RADIUS_MM, ShapeChange
 from stippler.kernels import gpu_dots
 from stippler.kernels.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.paper import Color
+from stippler.render.preview import UNKNOWN, PreviewUniforms
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
 _ALONE_PX = 4.0  # dots of this radius need not know of one another
-_NOT_OF_ROUND = ("u_form", "u_turn")
-_MODES = {"all": 1, "selected": 2, "tip": 3}
+_PAD_STEP = 1.25  # pads of previews are rounded up by this, or each would choose dots anew
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,7 @@ class DotsPass:
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self.buffer = DotBuffer(ctx)
+        self._preview = PreviewUniforms(ctx)
         self.n_draw_calls = 0
         self._programs: dict[tuple[str, ...], Program] = {}
         self._arrays: dict[tuple[str | int, ...], moderngl.VertexArray] = {}
@@ -73,7 +75,7 @@ class DotsPass:
             self.buffer.find_shares()
         self._choose(camera, size_px, origin_mm, preview)
         set_state(self._ctx, "add", sprites=True)
-        uniforms = _uniforms(camera, whole, origin_mm) | _preview_uniforms(preview, origin_mm)
+        uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, origin_mm)
         self._run_chosen((self._kind(camera, preview),), uniforms)
 
     def draw_marks(
@@ -88,7 +90,7 @@ class DotsPass:
         if not self.buffer.has_flags or self.buffer.n == 0:
             return
         set_state(self._ctx, "over", sprites=True)
-        uniforms = _uniforms(camera, size_px, origin_mm) | _preview_uniforms(preview, origin_mm)
+        uniforms = _uniforms(camera, size_px, origin_mm) | self._preview.of(preview, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
         self._run_chosen((self._kind(camera, preview), "MARKS"), uniforms)
 
@@ -105,13 +107,7 @@ class DotsPass:
     ) -> None:
         """Decide what to draw, unless the view is the one it was decided for."""
         buffer = self.buffer
-        change = preview.change if preview else None
-        growth, addend = change.radius if change else (1.0, 0.0)
-        largest = buffer.max_radius_mm * max(growth, 1.0) + max(addend, 0.0)
-        deforms = bool(change and change.deforms)
-        long = MAX_ELONGATION if deforms else buffer.max_elongation
-        pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or deforms)))
-        pad *= largest / buffer.max_radius_mm
+        pad = self._pad(preview.change if preview else None)
         small_mm = self._reach_px / (camera.px_per_mm * pad)
         view = _View(camera, size_px, pad, small_mm, buffer.revision)
         if view == self._seen:
@@ -126,15 +122,36 @@ class DotsPass:
             ):
                 chosen.set(gpu_dots.choose(buffer.rows, inside, pad, limits))
 
-    def _kind(self, camera: Camera, preview: Preview | None) -> str:
+    def reach_mm(self, change: ShapeChange) -> float:
+        """Return how far from its centre a dot may be seen when it is changed."""
+        return self._pad(change) * self.buffer.max_radius_mm if self.buffer.n else 0.0
+
+    def _pad(self, change: ShapeChange | None) -> float:
+        """Return how many of its radii a dot reaches at most."""
         buffer = self.buffer
-        deforms = bool(preview and preview.change.deforms)
-        if buffer.is_round and not deforms:
+        if change is None:
+            return math.sqrt(buffer.max_elongation * (1.0 + MAX_ROUGH * buffer.is_rough))
+        long = MAX_ELONGATION if change.elongates else buffer.max_elongation
+        pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or change.roughens)))
+        pad *= self._largest_mm(change) / buffer.max_radius_mm
+        return float(_PAD_STEP ** math.ceil(math.log(pad, _PAD_STEP)))
+
+    def _largest_mm(self, change: ShapeChange | None) -> float:
+        """Return what no dot's radius is above."""
+        largest = self.buffer.max_radius_mm
+        if change is None:
+            return largest
+        changed = largest * change.radius.factor + change.radius.addend
+        return max(largest, min(changed, MAX_RADIUS_MM))
+
+    def _kind(self, camera: Camera, preview: Preview | None) -> str:
+        """Return the cheapest shader that draws all dots right."""
+        buffer, change = self.buffer, preview.change if preview else None
+        is_rough = buffer.is_rough or (change is not None and change.roughens)
+        if buffer.is_round and not (is_rough or (change is not None and change.elongates)):
             return "ROUND"
-        largest_px = buffer.max_radius_mm * camera.px_per_mm
-        if preview:
-            return "ROUGH"
-        return "ROUGH" if buffer.is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
+        largest_px = self._largest_mm(change) * camera.px_per_mm
+        return "ROUGH" if is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
 
     def _run(
         self, defines: tuple[str, ...], data: moderngl.Buffer, n: int, uniforms: dict[str, Any]
@@ -157,9 +174,7 @@ class DotsPass:
         if as_points:
             assert self._seen is not None
             uniforms = uniforms | {"u_largest_mm": self._seen.largest_mm}
-        if "ROUND" in defines:
-            uniforms = {k: v for k, v in uniforms.items() if k not in _NOT_OF_ROUND}
-        program.set(uniforms)
+        program.set({k: v for k, v in uniforms.items() if k not in UNKNOWN[defines[0]]})
         if as_points:
             array.render(moderngl.POINTS, vertices=n)
         else:
@@ -180,6 +195,7 @@ class DotsPass:
         self._programs.clear()
         for chosen in self._chosen:
             chosen.gl.release()
+        self._preview.release()
         self.buffer.release()
 
 
@@ -228,19 +244,4 @@ def _uniforms(camera: Camera, whole_px: Size, origin_mm: Origin) -> dict[str, An
         "u_middle_px": (whole_px[0] / 2, whole_px[1] / 2),
         "u_px_to_clip": (2 / whole_px[0], 2 / whole_px[1]),
         "u_px_per_mm": camera.px_per_mm,
-    }
-
-
-def _preview_uniforms(preview: Preview | None, origin_mm: Origin) -> dict[str, Any]:
-    if preview is None:
-        return {"u_preview": 0}
-    change = preview.change
-    x, y = (preview.center_mm[i] - origin_mm[i] for i in (0, 1))
-    turns = change.angle_rad is not None
-    return {
-        "u_preview": _MODES[preview.which],
-        "u_tip": (x, y, max(preview.radius_mm, 1e-6), preview.hardness),
-        "u_radius": change.radius,
-        "u_form": (*change.elongation, *change.roughness),
-        "u_turn": (float(turns), change.angle_rad or 0.0, change.scatter_rad),
     }

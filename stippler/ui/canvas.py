@@ -14,7 +14,9 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
+from stippler.drawing.preview import Preview
 from stippler.ui.look import Look
+from stippler.ui.patch import Patch
 from stippler.ui.session import Session
 from stippler.ui.tools.toolbox import Chosen
 from stippler.ui.widgets import Rect
@@ -43,24 +45,59 @@ class Canvas:
         self._uploaded: object = None
         self._edited: Editing | None = None  # whose dots are on the GPU
         self._selected: NDArray[np.int64] = np.empty(0, np.int64)
+        self.patch = Patch(ctx)
         self.n_drawn = 0
 
-    def show(self, area: Rect, size_px: Size) -> None:
-        """Put the picture behind all panels, at ImGui's coordinates."""
+    def show(
+        self, area: Rect, size_px: Size, preview: Preview | None, camera: Camera, ratio: float
+    ) -> None:
+        """Put the picture behind all panels, at ImGui's coordinates.
+
+        Parameters
+        ----------
+        ratio : float
+            Pixels of the canvas for each of ImGui's.
+        """
         texture = self._sized(size_px)
         imgui.get_background_draw_list().add_image(
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
+        self.patch.place(preview, self._made, camera, size_px)
+        self.patch.show(area, ratio)
 
-    def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
+    def draw(
+        self,
+        session: Session,
+        selection: Chosen,
+        camera: Camera,
+        look: Look,
+        preview: Preview | None,
+    ) -> bool:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
         size_px = self._texture.size
         content = _content(session, selection)
-        key = (camera, size_px, content, look.theme, look.reference_opacity)
-        if key == self._drawn:
-            return False
+        whole = preview if preview is None or preview.footprint is None else None
+        key = (camera, size_px, content, look.theme, look.reference_opacity, whole)
+        is_new = key != self._drawn
+        if is_new:
+            self._draw_page(session, selection, camera, look, whole)
+            self._drawn = key
+            self.n_drawn += 1
+        if self._made is not None:
+            self.patch.draw(preview, self._made, camera, size_px, look, key)
+        return is_new
+
+    def _draw_page(
+        self,
+        session: Session,
+        selection: Chosen,
+        camera: Camera,
+        look: Look,
+        preview: Preview | None,
+    ) -> None:
+        assert self._target is not None
         if session.drawing is None:
             self._target.use()
             self._target.clear(*look.theme.desk, 1.0)
@@ -71,17 +108,16 @@ class Canvas:
                 session.reference if look.reference_shown else None, look.reference_opacity
             )
             colours = look.theme
+            renderer.set_preview(preview)
             renderer.draw(
                 camera,
-                size_px,
+                self._target.size,
                 self._target,
                 paper=colours.paper,
                 desk=colours.desk,
                 ink=colours.ink,
             )
-        self._drawn = key
-        self.n_drawn += 1
-        return True
+            renderer.set_preview(None)
 
     def _renderer(self) -> Renderer:
         """Return the renderer; it is imported late, for the sake of the first frame."""
@@ -139,6 +175,7 @@ class Canvas:
     def close(self) -> None:
         """Free every GL object."""
         self._free()
+        self.patch.close()
         if self._made is not None:
             self._made.release()
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from stippler.drawing.preview import Preview
 from stippler.ui.actions import commands_for
 from stippler.ui.canvas import Canvas
 from stippler.ui.dialogs import Dialogs, has_native_dialogs
@@ -31,6 +32,7 @@ from stippler.ui.pointer import Pointer
 from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule
 from stippler.ui.session import Session
+from stippler.ui.shaping import Shaping
 from stippler.ui.states import Idle
 from stippler.ui.view import BLANK, View
 from stippler.ui.widgets import Rect, Widgets
@@ -70,12 +72,14 @@ class Editor:
         self.gui = Gui(window, self.look.theme)
         self.canvas = Canvas(window.ctx)
         self.painting = Painting(session)
+        self.shaping = Shaping(session, self.painting)
         self.new_page = NewPage(session)
         self.commands = commands_for(self, session, window)
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
         self._layout, self._schedule, self._rate = Layout(), Schedule(), FrameRate()
         self._ratio, self._panel_to_show = 1.0, ""
+        self._preview: Preview | None = None
         self._last_s = clock()
         self._size_px = window.size_px
 
@@ -128,7 +132,11 @@ class Editor:
         with self._window.frame() as screen:
             try:
                 self.canvas.draw(
-                    self.session, self.painting.toolbox.selection, self.view.camera, self.look
+                    self.session,
+                    self.painting.toolbox.selection,
+                    self.view.camera,
+                    self.look,
+                    self._preview,
                 )
             except Exception as error:  # noqa: BLE001 - the editor lives on; the person is told
                 self._report(error, "the page")
@@ -144,7 +152,8 @@ class Editor:
             self._take(event)
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
-        self.canvas.show(area, self.view.size_px)
+        self._preview = self._previewed()
+        self.canvas.show(area, self.view.size_px, self._preview, self.view.camera, self._ratio)
         self._guarded("the brush's outline", lambda: self._draw_overlay(area))
         if self.pointer.state.cursor == "hand" and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
@@ -200,6 +209,13 @@ class Editor:
         zoom = self.view.camera.px_per_mm / self._window.px_per_mm
         draw_status(self.widgets, self.session, self.pointer.at_mm, zoom, self._rate)
 
+    def _previewed(self) -> Preview | None:
+        """Return the change that is held in a panel, or the one that the brush would make."""
+        hovers = isinstance(self.pointer.state, Idle)
+        return self.shaping.preview or (
+            self.painting.preview(self.pointer.at_mm) if hovers else None
+        )
+
     def _place(self, area: Rect) -> None:
         """Tell view and pointer where the canvas is."""
         self._ratio = ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
@@ -215,6 +231,8 @@ class Editor:
                 self._drop(paths)
             case KeyDown() if self.gui.wants_keys or self._asks:
                 pass
+            case KeyDown(key="escape") if self.shaping.let_go():
+                imgui.internal.clear_active_id()
             case KeyDown() if self.painting.is_busy or self.painting.leave(event):
                 self._paint(event)
             case KeyDown() if self.commands.take(event):
