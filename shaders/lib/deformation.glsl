@@ -103,9 +103,11 @@ float darkness_at(vec2 position_mm) {
 float goal_angle(vec2 position_mm, Shape s) {
     float goal = u_turn.x > 0.0 ? u_turn.y : s.angle;
     if (u_turn.x > 1.0) {
-        vec2 x = vec2(u_edges.x, 0.0), y = x.yx;
-        vec2 slope = vec2(darkness_at(position_mm + x) - darkness_at(position_mm - x),
-                          darkness_at(position_mm + y) - darkness_at(position_mm - y));
+        vec2 slope = vec2(0.0);
+        for (int i = 0; i < 8; i++) {
+            vec2 away = vec2(cos(float(i) * PI / 4.0), sin(float(i) * PI / 4.0));
+            slope += away * darkness_at(position_mm + u_edges.x * away);
+        }
         bool is_flat = length(slope) <= 1.0 / 512.0;
         goal = is_flat ? s.angle : atan(slope.y, slope.x) + PI / 2.0;
     }

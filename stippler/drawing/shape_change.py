@@ -22,9 +22,10 @@ Floats = NDArray[np.float64]
 
 MIN_RADIUS_MM, MAX_RADIUS_MM = 0.005, 50.0
 FLAT = 1.0 / 512.0
-"""Least difference of darkness that makes an edge."""
+"""Least sum of differences of darkness that makes an edge."""
 
 _ANGLE, _ELONGATION, _ROUGHNESS = 0x5BD1E995, 0x27D4EB2F, 0x165667B1  # salts
+_N_AROUND = 8  # places around a dot where darkness is looked at
 _LONGER_WAY = 0.45  # of a half turn; no angle that anyone sets lies just there
 
 
@@ -51,7 +52,7 @@ class Edges:
     Attributes
     ----------
     reach_mm : float
-        How far to each side the slope is measured.
+        How far around a dot the slope is measured.
     """
 
     reference: Reference
@@ -59,11 +60,13 @@ class Edges:
 
     def directions(self, position_mm: Floats) -> Floats:
         """Return the direction across the steepest slope at points; NaN where there is none."""
-        r = self.reach_mm
-        x, y = (
-            self.reference.at(position_mm + step) - self.reference.at(position_mm - step)
-            for step in (np.array([r, 0.0]), np.array([0.0, r]))
-        )
+        x, y = np.zeros((2, len(position_mm)))
+        for k in range(_N_AROUND):
+            turn = math.tau * k / _N_AROUND
+            c, s = math.cos(turn), math.sin(turn)
+            darkness = self.reference.at(position_mm + self.reach_mm * np.array([c, s]))
+            x += c * darkness
+            y += s * darkness
         return np.where(np.hypot(x, y) > FLAT, np.arctan2(y, x) + math.pi / 2, math.nan)
 
 

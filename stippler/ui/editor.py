@@ -14,7 +14,7 @@ from stippler.ui.canvas import Canvas
 from stippler.ui.dialogs import Dialogs, has_native_dialogs
 from stippler.ui.events import Dropped, Event, KeyDown, Moved, Pressed, Released, Scrolled
 from stippler.ui.gui import Gui
-from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW, Layout
+from stippler.ui.layout import BRUSH, DRAWING, HISTORY, SHAPE, VIEW, Layout
 from stippler.ui.look import Look
 from stippler.ui.messages import ERROR, WARNING
 from stippler.ui.overlay import draw_overlay
@@ -25,9 +25,11 @@ from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
+from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.sight import draw_view
 from stippler.ui.panels.status import draw_status
 from stippler.ui.panels.tools import draw_tools
+from stippler.ui.pen_samples import PenSamples
 from stippler.ui.pointer import Pointer
 from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule
@@ -71,6 +73,7 @@ class Editor:
         self.dialogs = Dialogs(use_native=native)
         self.gui = Gui(window, self.look.theme)
         self.canvas = Canvas(window.ctx)
+        self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
         self.new_page = NewPage(session)
@@ -117,6 +120,7 @@ class Editor:
         """Keep the brushes; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self.canvas.close()
+        self._samples.close()
         self.gui.close()
 
     # --- one frame --------------------------------------------------------------------------
@@ -160,6 +164,7 @@ class Editor:
         self._guarded("the tools", self._draw_tools)
         self._guarded("the panel", self._draw_panel)
         self._guarded("the brush's panel", self._draw_brush)
+        self._guarded("the shape panel", self._draw_shape)
         self._guarded("the view's panel", self._draw_view)
         self._guarded("the history", self._draw_history)
         if self.session.drawing is None and not self.session.busy:
@@ -195,6 +200,13 @@ class Editor:
     def _draw_brush(self) -> None:
         if imgui.begin(BRUSH, None, imgui.WindowFlags_.no_collapse)[0]:
             draw_brush(self.widgets, self.painting, self.commands)
+        imgui.end()
+
+    def _draw_shape(self) -> None:
+        if imgui.begin(SHAPE, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_shape(self.widgets, self.shaping, self._samples)
+        else:
+            self.shaping.let_go()
         imgui.end()
 
     def _draw_history(self) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.preview import Preview
 from stippler.ui.painting import Painting
@@ -35,8 +36,10 @@ class Shaping:
     direction : str
         One of `DIRECTIONS`: where elongated dots point.
     angle_rad, scatter_rad : float
-    held : ShapeChange or None
-        What is shown and not made yet.
+    holder : str
+        The control that a person has hold of; empty if none.
+    value : float
+        Of that control.
     """
 
     def __init__(self, session: Session, painting: Painting) -> None:
@@ -44,7 +47,8 @@ class Shaping:
         self.selected = False
         self.direction = "own"
         self.angle_rad = self.scatter_rad = 0.0
-        self.held: ShapeChange | None = None
+        self.holder, self.value = "", 0.0
+        self._held: ShapeChange | None = None  # what is shown and not made yet
         self._of: Editing | None = None  # whose dots `held` is for
         self._averages: tuple[object, Averages] = (None, Averages())
 
@@ -77,23 +81,46 @@ class Shaping:
     @property
     def preview(self) -> Preview | None:
         """What is to be shown; nothing once another drawing is open or dots are being made."""
-        if self.held is None or self._of is not self._session.editing or not self.can:
-            self.held = None
+        if self._held is None or self._of is not self._session.editing or not self.can:
+            self.let_go()
             return None
-        return Preview(self.held, "selected" if self.selected else "all")
+        return Preview(self._held, "selected" if self.selected else "all")
 
-    def hold(self, change: ShapeChange) -> None:
+    def facing(self) -> dict[str, Any]:
+        """Return the direction that dots are to take, as values of a `ShapeChange`."""
+        reference, editing = self._session.reference, self._session.editing
+        if self.direction == "angle":
+            return {"angle_rad": self.angle_rad, "scatter_rad": self.scatter_rad}
+        if self.direction == "random":
+            return {"angle_rad": 0.0, "scatter_rad": math.pi / 2}
+        if self.direction == "edges" and reference is not None and editing is not None:
+            from stippler.drawing.shape_change import Edges
+
+            page = editing.drawing.page
+            apart_mm = math.sqrt(page.width_mm * page.height_mm / max(len(editing.dots), 1))
+            edges = Edges(reference, max(apart_mm, reference.pixel_mm))
+            return {"edges": edges, "scatter_rad": self.scatter_rad}
+        return {}
+
+    @property
+    def has_edges(self) -> bool:
+        """Whether there is a picture to go by."""
+        return self._session.reference is not None
+
+    def hold(self, holder: str, value: float, change: ShapeChange) -> None:
         """Show a change; the drawing stays as it is."""
-        self.held, self._of = change, self._session.editing
+        self.holder, self.value = holder, value
+        self._held, self._of = change, self._session.editing
 
     def let_go(self) -> bool:
         """Show the drawing as it is again; return whether anything was held."""
-        was, self.held = self.held is not None, None
+        was, self._held = self._held is not None, None
+        self.holder = ""
         return was
 
     def make(self, what: str, change: ShapeChange) -> None:
         """Change the drawing; one step of its history."""
-        self.held = None
+        self.let_go()
         if self.can:
             dots = "selected dots" if self.selected else "all dots"
             self._painting.reshape(f"{what} {dots}", change, selected=self.selected)
