@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -70,15 +70,10 @@ def dots(
     return made
 
 
-def drawn_with(pen: Pen, made: Dots) -> Dots:
-    """Return dots as a pen makes them."""
-    return replace(made, **pen.change.of(made))  # type: ignore[arg-type]
-
-
 def samples(pen: Pen, left: float) -> Dots:
     """Return twelve large dots."""
     grid = np.stack(np.meshgrid(np.arange(4), np.arange(3)), -1).reshape(-1, 2)
-    return drawn_with(pen, Dots.round(grid * 11.0 + (left + 5.0, PEN_TOP + 15.0), 2.4))
+    return pen.drawn(Dots.round(grid * 11.0 + (left + 5.0, PEN_TOP + 15.0), 2.4))
 
 
 def tone(pen: Pen, left: float, top: float) -> Dots:
@@ -86,7 +81,7 @@ def tone(pen: Pen, left: float, top: float) -> Dots:
     position = relaxed(900) * (PATCH, 66.0) + (left, top)
     dark = np.interp(position[:, 1], (top, top + 66), (0.05, 0.75))
     radius = np.sqrt(dark * PATCH * 66.0 / (900 * math.pi))
-    return drawn_with(pen, Dots.round(position, radius, first_id=7))
+    return pen.drawn(Dots.round(position, radius, first_id=7))
 
 
 def relaxed(n: int) -> NDArray[np.float64]:

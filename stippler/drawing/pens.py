@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from stippler.drawing.dots import MAX_ELONGATION
+from stippler.drawing.dots import MAX_ELONGATION, Dots
 from stippler.drawing.shape_change import ShapeChange, to
 from stippler.errors import ParameterError
 
@@ -53,6 +53,10 @@ class Pen:
             angle_rad=self.angle_rad,
             scatter_rad=self.spread_rad,
         )
+
+    def drawn(self, dots: Dots) -> Dots:
+        """Return dots as this pen draws them; they share the arrays that stay."""
+        return replace(dots, **self.change.of(dots))  # type: ignore[arg-type]
 
 
 def _check_range(name: str, limits: tuple[float, float], low: float, high: float) -> None:

@@ -15,6 +15,7 @@ from stippler.kernels.pool import run_ranges
 N_WORDS = 6  # x, y, radius; elongation and angle, roughness, flags and share, seed
 WORD_BYTES = 4
 FIXED, SELECTED = 1, 2
+SEED = 5  # its place among the words
 ROUND_WORDS = (0, 0xFF000000, 0)  # elongation 1, no roughness, no flags, a share of 1
 
 _GRAIN = 16384

@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import Dots, first_seeds
 from stippler.kernels import gpu_dots
 from stippler.kernels.overlap import shares_of_union
 
@@ -73,6 +73,7 @@ class DotBuffer:
         if not same:
             self._order(position_mm, origin_mm)
             self.rows[:, 3:] = gpu_dots.ROUND_WORDS
+            self.rows[:, gpu_dots.SEED] = first_seeds(self._row_of_slot)
             self._forget()
         rows = self._row_of_slot
         gpu_dots.pack_places(position_mm, radius_mm, origin_mm, rows, self.rows)

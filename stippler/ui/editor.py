@@ -8,6 +8,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
 from stippler.ui.actions import commands_for
 from stippler.ui.canvas import Canvas
@@ -222,7 +223,9 @@ class Editor:
         draw_status(self.widgets, self.session, self.pointer.at_mm, zoom, self._rate)
 
     def _previewed(self) -> Preview | None:
-        """Return the change that is held in a panel, or the one that the brush would make."""
+        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        if self.session.pen:
+            return Preview(pen_named(self.session.pen).change)
         hovers = isinstance(self.pointer.state, Idle)
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import moderngl
 import numpy as np
@@ -76,5 +76,4 @@ def _strip(pen: Pen, k: int, page: tuple[float, float]) -> Dots:
     x += 0.5 * (np.arange(len(x)) // n_x % 2)  # every other row by half a step
     at = np.column_stack([x * width / n_x + _MARGIN - 2.5, (y / n_y + k) * height])
     at += np.random.default_rng(5).uniform(-_JITTER, _JITTER, at.shape)
-    dots = Dots.round(at, np.interp(at[:, 0], (0.0, width), _RADII))
-    return replace(dots, **pen.change.of(dots))  # type: ignore[arg-type]
+    return pen.drawn(Dots.round(at, np.interp(at[:, 0], (0.0, width), _RADII)))

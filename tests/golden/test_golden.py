@@ -7,7 +7,6 @@ What fails leaves result, reference and difference in tests/failed/.
 """
 
 import os
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -58,7 +57,7 @@ def dots_of(pen_name: str) -> Dots:
     grid = np.stack(np.meshgrid(np.arange(14), np.arange(10)), -1).reshape(-1, 2)
     position = (grid + 0.5 + rng.uniform(-0.25, 0.25, grid.shape)) * (16 / 14, 12 / 10)
     dots = Dots.round(position, rng.uniform(0.2, 0.45, len(grid)))
-    return replace(dots, **pen_named(pen_name).change.of(dots))
+    return pen_named(pen_name).drawn(dots)
 
 
 def difference(a: np.ndarray, b: np.ndarray) -> float:

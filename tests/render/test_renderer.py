@@ -11,6 +11,8 @@ from stippler import headless
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
+from stippler.drawing.pens import pen_named
+from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
@@ -179,6 +181,17 @@ def test_positions_of_another_number_are_round_dots(page, ink, many):
     seen = ink(FIT, SIZE)
     page.set_dots(others)
     np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=1.5 / 255)
+
+
+def test_what_a_worker_makes_is_seen_as_its_pen_will_draw_it(page, ink, many):
+    made = many(7, 5, "round")
+    pen = pen_named("stick")
+    page.set_positions(made.position_mm, made.radius_mm)
+    page.set_preview(Preview(pen.change))
+    seen = ink(FIT, SIZE)
+    page.set_preview(None)
+    page.set_dots(pen.drawn(Dots.round(made.position_mm, made.radius_mm)))
+    np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=0.03)
 
 
 def test_drawing_twice_gives_the_same_bits(page, canvas, many):

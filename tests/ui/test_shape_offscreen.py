@@ -165,3 +165,17 @@ def test_dots_turn_along_the_picture(shaping) -> None:
     along = np.arctan2(*from_middle[at_rim].T[::-1]) + np.pi / 2
     off = np.sin(editing.dots.angle_rad[at_rim] - along)
     assert np.abs(off).mean() < 0.15
+
+
+def test_a_drawing_is_made_with_a_pen_and_seen_so_meanwhile(shaping) -> None:
+    session, editor = shaping.app.session, shaping.app.editor
+    first = session.editing.dots.copy()
+    assert session.edit_plan(pen="stick")
+    session.start()
+    shaping.host.until(lambda: session.position_mm is not None, "dots")
+    shaping.host.until(lambda: editor._preview is not None or not session.busy, "a frame")
+    assert not session.busy or editor._preview.change.roughens
+    shaping.host.until(lambda: not session.busy, "the drawing")
+    dots = session.editing.dots
+    assert dots.roughness.min() > 0.5
+    assert np.array_equal(dots.radius_mm, first.radius_mm)
