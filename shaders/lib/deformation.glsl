@@ -1,30 +1,12 @@
 // A dot's shape as the drawing has it, and as a change of shape under way would leave it.
 // The same formulas in Python: stippler/drawing/shape_change.py and stippler/brushes/tip.py.
 // Needs lib/dot_shape.glsl.
+//
+// With PREVIEW a change is under way; with TIP it is for the dots under a brush, with EDGES it goes
+// by a reference's edges. Defines and not values, as software GL takes every branch.
 
 const uint FLAG_FIXED = 1u, FLAG_SELECTED = 2u;
-const int PREVIEW_NONE = 0, PREVIEW_ALL = 1, PREVIEW_SELECTED = 2, PREVIEW_TIP = 3;
-const int TIP_ROUND = 0, TIP_SQUARE = 1, TIP_POLYGON = 2;
-const int MOST_CORNERS = 32;
 const float PI = 3.14159265359;
-const float MIN_RADIUS_MM = 0.005, MAX_RADIUS_MM = 50.0;
-
-uniform int u_preview;
-uniform vec3 u_tip;       // centre, mm from the page's middle; how far it reaches
-uniform vec4 u_tip_to_unit; // rows of the matrix to the tip's own coordinates
-uniform vec3 u_tip_effect; // hardness, strength, a polygon's depth
-uniform ivec2 u_tip_outline; // which, how many corners
-uniform vec2 u_corners[MOST_CORNERS];
-uniform vec2 u_radius;    // factor and addend, mm
-#ifndef ROUND
-uniform vec3 u_elongation; // factor, addend, spread
-#ifdef ROUGH
-uniform vec3 u_roughness;
-#endif
-uniform vec4 u_turn;      // 1 to turn towards an angle or 2 along edges; angle, scatter; stretch
-uniform vec4 u_edges;     // reach and pixel of the reference, mm; its top left from the middle
-uniform sampler2D u_darkness;
-#endif
 
 struct Shape {
     float elongation;
@@ -45,6 +27,29 @@ Shape unpack_shape(uvec3 packed_shape) {
     s.seed = packed_shape.z;
     return s;
 }
+
+#ifdef PREVIEW
+const float MIN_RADIUS_MM = 0.005, MAX_RADIUS_MM = 50.0;
+uniform vec2 u_radius;      // factor and addend, mm
+#ifndef ROUND
+uniform vec3 u_elongation;  // factor, addend, spread
+uniform vec4 u_turn;        // 1 to turn towards a direction; angle, scatter; stretch
+#endif
+#ifdef ROUGH
+uniform vec3 u_roughness;
+#endif
+#ifndef TIP
+uniform bool u_selected_only;
+#endif
+
+#ifdef TIP
+const int TIP_SQUARE = 1, TIP_POLYGON = 2;
+const int MOST_CORNERS = 32;
+uniform vec3 u_tip;         // centre, mm from the page's middle; how far it reaches
+uniform vec4 u_tip_to_unit; // rows of the matrix to the tip's own coordinates
+uniform vec3 u_tip_effect;  // hardness, strength, a polygon's depth
+uniform ivec2 u_tip_outline; // 0 or one of the above; how many corners
+uniform vec2 u_corners[MOST_CORNERS];
 
 // Distance from a polygon's border, negative outside it.
 float depth_in_polygon(vec2 at) {
@@ -73,9 +78,14 @@ float tip_weight(vec2 position_mm) {
     return t * t * (3.0 - 2.0 * t) * u_tip_effect.y;
 }
 
+#endif
+
 float preview_weight(vec2 position_mm, uint flags) {
-    if (u_preview == PREVIEW_SELECTED) return (flags & FLAG_SELECTED) != 0u ? 1.0 : 0.0;
-    return u_preview == PREVIEW_TIP ? tip_weight(position_mm) : 1.0;
+#ifdef TIP
+    return tip_weight(position_mm);
+#else
+    return !u_selected_only || (flags & FLAG_SELECTED) != 0u ? 1.0 : 0.0;
+#endif
 }
 
 #ifndef ROUND
@@ -90,6 +100,10 @@ float stepped(float old, vec3 change, float w, uint seed, uint salt) {
 // The turn to the same axis, the shorter way; the cut lies where exact angles do not.
 float shorter(float turn) { return turn - PI * floor(turn / PI + 0.45); }
 
+#ifdef EDGES
+uniform vec4 u_edges;       // reach and pixel of the reference, mm; its top left from the middle
+uniform sampler2D u_darkness;
+
 float darkness_at(vec2 position_mm) {
     ivec2 last = textureSize(u_darkness, 0) - 1;
     vec2 at = clamp((position_mm - u_edges.zw) / u_edges.y - 0.5, vec2(0.0), vec2(last));
@@ -100,17 +114,22 @@ float darkness_at(vec2 position_mm) {
     return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
 }
 
-float goal_angle(vec2 position_mm, Shape s) {
-    float goal = u_turn.x > 0.0 ? u_turn.y : s.angle;
-    if (u_turn.x > 1.0) {
-        vec2 slope = vec2(0.0);
-        for (int i = 0; i < 8; i++) {
-            vec2 away = vec2(cos(float(i) * PI / 4.0), sin(float(i) * PI / 4.0));
-            slope += away * darkness_at(position_mm + u_edges.x * away);
-        }
-        bool is_flat = length(slope) <= 1.0 / 512.0;
-        goal = is_flat ? s.angle : atan(slope.y, slope.x) + PI / 2.0;
+float along_edge(vec2 position_mm, float own) {
+    vec2 slope = vec2(0.0);
+    for (int i = 0; i < 8; i++) {
+        vec2 away = vec2(cos(float(i) * PI / 4.0), sin(float(i) * PI / 4.0));
+        slope += away * darkness_at(position_mm + u_edges.x * away);
     }
+    return length(slope) <= 1.0 / 512.0 ? own : atan(slope.y, slope.x) + PI / 2.0;
+}
+#endif
+
+float goal_angle(vec2 position_mm, Shape s) {
+#ifdef EDGES
+    float goal = along_edge(position_mm, s.angle);
+#else
+    float goal = u_turn.x > 0.0 ? u_turn.y : s.angle;
+#endif
     return goal + (2.0 * dice(s.seed, 0x5bd1e995u) - 1.0) * u_turn.z;
 }
 
@@ -130,7 +149,6 @@ void turn(vec2 position_mm, float w, inout Shape s) {
 #endif
 
 void deform(vec2 position_mm, inout float radius_mm, inout Shape s) {
-    if (u_preview == PREVIEW_NONE) return;
     float w = preview_weight(position_mm, s.flags);
     if (w == 0.0) return;
     float goal = max(radius_mm * u_radius.x + u_radius.y, MIN_RADIUS_MM);
@@ -143,3 +161,4 @@ void deform(vec2 position_mm, inout float radius_mm, inout Shape s) {
     turn(position_mm, w, s);
 #endif
 }
+#endif

@@ -18,7 +18,7 @@ from stippler.kernels.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.paper import Color
-from stippler.render.preview import UNKNOWN, PreviewUniforms
+from stippler.render.preview import PreviewUniforms, defines
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
@@ -75,8 +75,9 @@ class DotsPass:
             self.buffer.find_shares()
         self._choose(camera, size_px, origin_mm, preview)
         set_state(self._ctx, "add", sprites=True)
-        uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, origin_mm)
-        self._run_chosen((self._kind(camera, preview),), uniforms)
+        kind = self._kind(camera, preview)
+        uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, kind, origin_mm)
+        self._run_chosen((kind, *defines(preview, kind)), uniforms)
 
     def draw_marks(
         self,
@@ -90,17 +91,19 @@ class DotsPass:
         if not self.buffer.has_flags or self.buffer.n == 0:
             return
         set_state(self._ctx, "over", sprites=True)
-        uniforms = _uniforms(camera, size_px, origin_mm) | self._preview.of(preview, origin_mm)
+        kind = self._kind(camera, preview)
+        uniforms = _uniforms(camera, size_px, origin_mm)
+        uniforms |= self._preview.of(preview, kind, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
-        self._run_chosen((self._kind(camera, preview), "MARKS"), uniforms)
+        self._run_chosen((kind, *defines(preview, kind), "MARKS"), uniforms)
 
-    def _run_chosen(self, defines: tuple[str, ...], uniforms: dict[str, Any]) -> None:
+    def _run_chosen(self, names: tuple[str, ...], uniforms: dict[str, Any]) -> None:
         if self._all_small:
-            self._run((*defines, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
+            self._run((*names, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
             return
         small, large = self._chosen
-        self._run((*defines, "POINTS"), small.gl, small.n, uniforms)
-        self._run((*defines, "QUADS"), large.gl, large.n, uniforms)
+        self._run((*names, "POINTS"), small.gl, small.n, uniforms)
+        self._run((*names, "QUADS"), large.gl, large.n, uniforms)
 
     def _choose(
         self, camera: Camera, size_px: Size, origin_mm: Origin, preview: Preview | None
@@ -154,17 +157,17 @@ class DotsPass:
         return "ROUGH" if is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
 
     def _run(
-        self, defines: tuple[str, ...], data: moderngl.Buffer, n: int, uniforms: dict[str, Any]
+        self, names: tuple[str, ...], data: moderngl.Buffer, n: int, uniforms: dict[str, Any]
     ) -> None:
         if n == 0:
             return
-        program = self._programs.get(defines)
+        program = self._programs.get(names)
         if program is None:
-            asked = [d for d in defines if d not in ("SMOOTH", "QUADS")]
+            asked = [d for d in names if d not in ("SMOOTH", "QUADS")]
             program = Program(self._ctx, "dots.vert", "dots.frag", asked)
-            self._programs[defines] = program
-        as_points = "POINTS" in defines
-        key: tuple[str | int, ...] = (*defines, data.glo)
+            self._programs[names] = program
+        as_points = "POINTS" in names
+        key: tuple[str | int, ...] = (*names, data.glo)
         array = self._arrays.get(key)
         if array is None:
             rate = "" if as_points else "/i"
@@ -174,7 +177,7 @@ class DotsPass:
         if as_points:
             assert self._seen is not None
             uniforms = uniforms | {"u_largest_mm": self._seen.largest_mm}
-        program.set({k: v for k, v in uniforms.items() if k not in UNKNOWN[defines[0]]})
+        program.set(uniforms)
         if as_points:
             array.render(moderngl.POINTS, vertices=n)
         else:

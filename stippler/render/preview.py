@@ -9,15 +9,9 @@ import numpy as np
 
 from stippler.drawing.preview import MOST_CORNERS, Footprint, Preview
 from stippler.drawing.reference import Reference
-from stippler.drawing.shape_change import ShapeChange
-
-_SHAPES_ONLY = {"u_elongation", "u_roughness", "u_turn", "u_edges", "u_darkness"}
-UNKNOWN = {"ROUND": _SHAPES_ONLY, "SMOOTH": {"u_roughness"}, "ROUGH": set[str]()}
-"""What programs for each kind of dots do not have."""
+from stippler.drawing.shape_change import Edges
 
 _UNIT = 1  # of the darkness; 0 is used by other passes
-_MODES = {"all": 1, "selected": 2}
-_TIP = 3
 _OUTLINES = {"round": 0, "square": 1, "polygon": 2}
 
 
@@ -29,19 +23,26 @@ class PreviewUniforms:
         self._held: Reference | None = None
         self._darkness: moderngl.Texture | None = None
 
-    def of(self, preview: Preview | None, origin_mm: tuple[float, float]) -> dict[str, Any]:
-        """Return the uniforms for a preview or for none, and bind what they need."""
+    def of(
+        self, preview: Preview | None, kind: str, origin_mm: tuple[float, float]
+    ) -> dict[str, Any]:
+        """Return the uniforms of the program for these defines, and bind what they need."""
         if preview is None:
-            return {"u_preview": 0}
+            return {}
         change, tip = preview.change, preview.footprint
-        mode = _TIP if tip else _MODES[str(preview.where)]
-        values = {"u_preview": mode, "u_radius": change.radius[:2]}
-        values |= _of_shapes(change, origin_mm)
-        if tip:
-            values |= _of_tip(tip, origin_mm)
-        if change.edges:
+        values: dict[str, Any] = {"u_radius": change.radius[:2]}
+        if kind != "ROUND":
+            turns = float(change.angle_rad is not None or change.edges is not None)
+            values["u_elongation"] = change.elongation
+            values["u_turn"] = turns, change.angle_rad or 0.0, change.scatter_rad, change.stretch
+        if kind == "ROUGH":
+            values["u_roughness"] = change.roughness
+        if "EDGES" in defines(preview, kind) and change.edges:
+            values |= _of_edges(change.edges, origin_mm)
             self._bind(change.edges.reference)
-        return values
+        return values | (
+            _of_tip(tip, origin_mm) if tip else {"u_selected_only": preview.where == "selected"}
+        )
 
     def _bind(self, reference: Reference) -> None:
         if reference is not self._held:
@@ -61,15 +62,19 @@ class PreviewUniforms:
         self._darkness = self._held = None
 
 
-def _of_shapes(change: ShapeChange, origin_mm: tuple[float, float]) -> dict[str, Any]:
-    edges = change.edges
-    turns = 2.0 if edges else float(change.angle_rad is not None)
-    reach, pixel = (edges.reach_mm, edges.reference.pixel_mm) if edges else (0.0, 1.0)
+def defines(preview: Preview | None, kind: str) -> tuple[str, ...]:
+    """Return what a program that shows a preview on dots of a kind is compiled with."""
+    if preview is None:
+        return ()
+    tip = ("TIP",) if preview.footprint else ()
+    edges = ("EDGES",) if preview.change.edges and kind != "ROUND" else ()
+    return ("PREVIEW", *tip, *edges)
+
+
+def _of_edges(edges: Edges, origin_mm: tuple[float, float]) -> dict[str, Any]:
+    pixel_mm = edges.reference.pixel_mm
     return {
-        "u_elongation": change.elongation,
-        "u_roughness": change.roughness,
-        "u_turn": (turns, change.angle_rad or 0.0, change.scatter_rad, change.stretch),
-        "u_edges": (reach, pixel, -origin_mm[0], -origin_mm[1]),
+        "u_edges": (edges.reach_mm, pixel_mm, -origin_mm[0], -origin_mm[1]),
         "u_darkness": _UNIT,
     }
 
