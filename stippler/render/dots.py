@@ -53,6 +53,7 @@ class DotsPass:
         self._programs: dict[tuple[str, ...], Program] = {}
         self._arrays: dict[tuple[str | int, ...], moderngl.VertexArray] = {}
         self._chosen = [_Chosen(ctx), _Chosen(ctx)]  # small, large
+        self._parts = _Parts(ctx)
         self._seen: _View | None = None
         self._all_small = True
         span = ctx.info["GL_POINT_SIZE_RANGE"]
@@ -77,7 +78,11 @@ class DotsPass:
         set_state(self._ctx, "add", sprites=True)
         kind = self._kind(camera, preview)
         uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, kind, origin_mm)
-        self._run_chosen((kind, *defines(preview, kind)), uniforms)
+        names = (kind, *defines(preview, kind))
+        if kind == "ROUGH" and preview is None and self._all_small:
+            self._run_parts(camera, uniforms)
+        else:
+            self._run_chosen(names, uniforms)
 
     def draw_marks(
         self,
@@ -96,6 +101,13 @@ class DotsPass:
         uniforms |= self._preview.of(preview, kind, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
         self._run_chosen((kind, *defines(preview, kind), "MARKS"), uniforms)
+
+    def _run_parts(self, camera: Camera, uniforms: dict[str, Any]) -> None:
+        """Draw by the shader for rough dots only those that are large enough to look rough."""
+        buffer, parts = self.buffer, self._parts
+        parts.find(buffer, _ROUGH_FROM_PX / camera.px_per_mm)
+        for kind, part in (("SMOOTH", parts.smooth), ("ROUGH", parts.rough)):
+            self._run((kind, "POINTS"), buffer.gl, part.n, uniforms, part.gl)
 
     def _run_chosen(self, names: tuple[str, ...], uniforms: dict[str, Any]) -> None:
         if self._all_small:
@@ -157,7 +169,12 @@ class DotsPass:
         return "ROUGH" if is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
 
     def _run(
-        self, names: tuple[str, ...], data: moderngl.Buffer, n: int, uniforms: dict[str, Any]
+        self,
+        names: tuple[str, ...],
+        data: moderngl.Buffer,
+        n: int,
+        uniforms: dict[str, Any],
+        index: moderngl.Buffer | None = None,
     ) -> None:
         if n == 0:
             return
@@ -167,12 +184,12 @@ class DotsPass:
             program = Program(self._ctx, "dots.vert", "dots.frag", asked)
             self._programs[names] = program
         as_points = "POINTS" in names
-        key: tuple[str | int, ...] = (*names, data.glo)
+        key: tuple[str | int, ...] = (*names, data.glo, index.glo if index else 0)
         array = self._arrays.get(key)
         if array is None:
             rate = "" if as_points else "/i"
             content = [(data, f"3f4 3u4{rate}", "a_dot", "a_shape")]
-            array = self._ctx.vertex_array(program.gl, content)
+            array = self._ctx.vertex_array(program.gl, content, index_buffer=index)
             self._arrays[key] = array
         if as_points:
             assert self._seen is not None
@@ -198,26 +215,49 @@ class DotsPass:
         self._programs.clear()
         for chosen in self._chosen:
             chosen.gl.release()
+        self._parts.release()
         self._preview.release()
         self.buffer.release()
 
 
 class _Chosen:
-    """A GL buffer with some of the dots."""
+    """A GL buffer with some of the dots, or with the numbers of some."""
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+    def __init__(self, ctx: moderngl.Context, bytes_each: int = 24) -> None:
+        self._each = bytes_each
         self._room = 256
-        self.gl = ctx.buffer(reserve=self._room * 24)
+        self.gl = ctx.buffer(reserve=self._room * bytes_each)
         self.n = 0
 
     def set(self, rows: NDArray[np.uint32]) -> None:
         self.n = len(rows)
         if self.n > self._room:
             self._room = 1 << (self.n - 1).bit_length()
-            self.gl.orphan(self._room * 24)
+            self.gl.orphan(self._room * self._each)
         if self.n:
             self.gl.write(rows)
+
+
+class _Parts:
+    """Which dots look rough at a scale, and which do not, though their outlines are."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self.rough, self.smooth = _Chosen(ctx, 4), _Chosen(ctx, 4)
+        self._found: object = None
+
+    def find(self, buffer: DotBuffer, from_mm: float) -> None:
+        """Part the dots of a buffer, unless they are parted so."""
+        key = (buffer.revision, from_mm)
+        if key != self._found:
+            rough, smooth = gpu_dots.part_by_roughness(buffer.rows, from_mm)
+            self.rough.set(rough)
+            self.smooth.set(smooth)
+            self._found = key
+
+    def release(self) -> None:
+        """Free the GL objects."""
+        self.rough.gl.release()
+        self.smooth.gl.release()
 
 
 def _inside_mm(

@@ -142,6 +142,26 @@ def test_round_dots_that_become_rough_in_part_are_drawn_rough(page, ink, many):
     np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=1.5 / 255)
 
 
+def test_dots_too_small_to_look_rough_are_drawn_smooth_and_look_the_same(
+    page, ink, many, monkeypatch
+):
+    """The same pixels as if all went through the shader for rough dots."""
+    dots = many()
+    dots.roughness[::4] = 0
+    page.set_dots(dots)
+    camera, size = Camera((20, 15), 12.0), (480, 360)
+    seen = ink(camera, size)
+    assert page.n_draw_calls == 2
+    parts = page._dots._parts
+    assert 0 < parts.rough.n < len(dots)
+    assert parts.rough.n + parts.smooth.n == len(dots)
+    monkeypatch.setattr(
+        page._dots, "_run_parts", lambda _, uniforms: page._dots._run_chosen(("ROUGH",), uniforms)
+    )
+    np.testing.assert_allclose(ink(camera, size), seen, atol=1.5 / 255)
+    assert page.n_draw_calls == 1
+
+
 @pytest.mark.parametrize("n_new", [1, 30, 900])
 def test_new_dots_are_appended(page, ink, many, n_new):
     dots = many(40, 40)
