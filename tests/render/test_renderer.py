@@ -14,6 +14,7 @@ from stippler.drawing.drawing import Page
 from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
+from stippler.errors import ParameterError
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -172,6 +173,20 @@ def test_new_dots_are_appended(page, ink, many, n_new):
     seen = ink(FIT, SIZE)
     page.set_dots(dots)
     np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=1.5 / 255)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("elongation", 4.5), ("roughness", -0.1), ("angle_rad", math.nan)]
+)
+def test_shapes_outside_the_range_are_refused_with_a_message(page, ink, many, name, value):
+    dots = many()
+    page.set_dots(dots)
+    seen = ink(FIT, SIZE)
+    getattr(dots, name)[3] = value
+    for upload in (lambda: page.set_dots(dots), lambda: page.update_dots(dots, np.array([3]))):
+        with pytest.raises(ParameterError, match=name.removesuffix("_rad")):
+            upload()
+    assert (ink(FIT, SIZE) == seen).all()
 
 
 def test_removed_dots_are_gone(page, ink, many):
