@@ -44,8 +44,20 @@ def place_lens(
         places = [(x + away * i, y + away * j) for i, j in _SIDES]
         x, y = min(places, key=lambda place: _outside(place, d, room))
         x, y = (min(max(v, 0.0), room[k] - d) for k, v in enumerate((x, y)))
-    camera = replace(view.camera.zoomed(factor, at_px, room), center_mm=view.at(*at_px))
+    camera = _steady(view.camera.zoomed(factor, at_px, room), view.at(*at_px), d)
     return Glass(camera, d, (round(x), round(y)))
+
+
+def _steady(camera: Camera, center_mm: Point, d: int) -> Camera:
+    """Centre a camera on a point, to the nearest whole pixel from the page's corner.
+
+    Small dots then do not flicker as the lens moves, and where it moves by less than one of its
+    pixels, nothing is to be drawn.
+    """
+    at_corner = replace(camera, center_mm=(0.0, 0.0))
+    x, y = at_corner.page_to_screen(center_mm, (d, d))
+    near_x, near_y = at_corner.screen_to_page((round(float(x)), round(float(y))), (d, d))
+    return replace(camera, center_mm=(float(near_x), float(near_y)))
 
 
 def _outside(corner: Point, d: int, room: tuple[int, int]) -> float:

@@ -142,6 +142,8 @@ def test_an_adjusted_picture_makes_new_dots_as_a_step_that_can_be_undone(stage: 
     stage.tell(Work("done", 1, 1, adjusted, dots(7, "done")), "finished")
     assert session.editing is editing
     assert session.reference is adjusted
+    assert editing is not None
+    assert editing.drawing.reference is adjusted  # as brushes see it
     assert not session.outdated
     assert session.n_dots == 7
     session.undo()

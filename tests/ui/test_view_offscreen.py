@@ -144,7 +144,7 @@ def test_the_lens_shows_while_its_key_is_held_and_draws_only_what_changes(opened
     for _ in range(3):
         host.move(*PLACE)
     assert canvas.n_lens_drawn == lenses  # nothing has changed
-    host.move(PLACE[0] + 5, PLACE[1])
+    host.move(PLACE[0] + 9, PLACE[1])
     assert canvas.n_lens_drawn == lenses + 1
     assert canvas.n_drawn == pages  # the page is not drawn for the lens
     host.scroll(1, PLACE)  # the wheel takes the next strength
