@@ -119,11 +119,11 @@ class Host:
 
     def key_down(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Press a key and hold it."""
-        self._key(name, glfw.PRESS, ctrl, shift)
+        self._key(name, glfw.PRESS, ctrl=ctrl, shift=shift)
 
     def key_up(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Let a key come up."""
-        self._key(name, glfw.RELEASE, ctrl, shift)
+        self._key(name, glfw.RELEASE, ctrl=ctrl, shift=shift)
 
     def type(self, text: str) -> None:
         """Type text into the field that has the keyboard."""
@@ -173,7 +173,7 @@ class Host:
         imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, mods)
         self._frame()
 
-    def _key(self, name: str, action: int, ctrl: bool, shift: bool) -> None:
+    def _key(self, name: str, action: int, *, ctrl: bool = False, shift: bool = False) -> None:
         code = getattr(glfw, f"KEY_{name.upper()}")
         mods = (glfw.MOD_CONTROL if ctrl else 0) | (glfw.MOD_SHIFT if shift else 0)
         imgui.backends.glfw_key_callback(self._address, code, 0, action, mods)

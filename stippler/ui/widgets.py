@@ -193,14 +193,13 @@ class Widgets:
         high: float,
         tip: str,
         form: str = "%.0f",
-        *,
-        logarithmic: bool = False,
+        flags: int = 0,
     ) -> float:
         """Take a number by dragging; Ctrl and a click types it."""
         self.label(label)
-        flags = imgui.SliderFlags_.logarithmic if logarithmic else imgui.SliderFlags_.none
-        flags |= imgui.SliderFlags_.always_clamp
-        _, value = imgui.slider_float(f"##{label}", value, low, high, form, flags)
+        _, value = imgui.slider_float(
+            f"##{label}", value, low, high, form, imgui.SliderFlags_.always_clamp | flags
+        )
         self.note(label)
         self.tip(tip)
         return value

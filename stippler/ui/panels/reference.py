@@ -67,7 +67,7 @@ def _draw_adjustment(widgets: Widgets, now: Adjustment) -> Adjustment:
         *GAMMA_RANGE,
         "Above 1 the middle greys get lighter, below 1 darker; white and black stay.",
         "%.2f",
-        logarithmic=True,
+        imgui.SliderFlags_.logarithmic,
     )
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + widgets.indent - widgets.margin)
     tip = "Black for white: dots where the picture is light."
