@@ -66,6 +66,7 @@ class Editor:
         self._window, self._clock = window, clock
         self.session = session
         self.look = Look()
+        self.look.begin()
         self.view = View(BLANK, window.size_px)
         self.pointer = Pointer(self.view)
         native = has_native_dialogs() if native_dialogs is None else native_dialogs

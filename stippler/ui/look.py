@@ -35,6 +35,16 @@ class Look:
     magnification: int = 4
     lens_diameter: float = 240.0
 
+    def begin(self) -> None:
+        """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
+        self.dots_shown = True
+        self.lens = self.lens if self.lens in LENSES else "none"
+        for name in ("reduction", "magnification"):
+            kept = getattr(self, name)
+            setattr(self, name, min(STRENGTHS, key=lambda n: abs(n - kept)))
+        low, high = LENS_DIAMETERS
+        self.lens_diameter = min(max(low, self.lens_diameter), high)  # NaN ends at an end
+
     def turn_theme(self) -> None:
         """Change between light and dark."""
         self.theme = DARK if self.theme is LIGHT else LIGHT

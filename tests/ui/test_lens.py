@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -135,3 +137,15 @@ def test_it_is_never_larger_than_the_canvas() -> None:
     view = View(Page(100.0, 50.0), (90, 41))
     glass = place_lens(view, (10, 10), 0.25, 480.0, None)
     assert glass.diameter_px == 40
+
+
+def test_a_look_that_was_kept_begins_in_range() -> None:
+    look = Look(lens="kaleidoscope", reduction=3000, magnification=-1, dots_shown=False)
+    look.lens_diameter = math.nan
+    look.begin()
+    assert (look.lens, look.reduction, look.magnification) == ("none", 8, 2)
+    assert look.dots_shown
+    assert 100 <= look.lens_diameter <= 480
+    kept = Look(lens="reduce", reduction=2, lens_diameter=300.0)
+    kept.begin()
+    assert kept == Look(lens="reduce", reduction=2, lens_diameter=300.0)
