@@ -14,7 +14,9 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
+from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.preview import Preview
+from stippler.ui.lens import MARGIN, Glass
 from stippler.ui.look import Look
 from stippler.ui.patch import Patch
 from stippler.ui.session import Session
@@ -24,7 +26,10 @@ from stippler.ui.widgets import Rect
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Page
     from stippler.drawing.editing import Editing
+    from stippler.render.lens import LensPass
     from stippler.render.renderer import Renderer
+
+_RIM = 1.5  # the theme's pixels; each of the two lines of a lens's rim
 
 
 class Canvas:
@@ -32,8 +37,8 @@ class Canvas:
 
     Attributes
     ----------
-    n_drawn : int
-        How often the page has been drawn.
+    n_drawn, n_lens_drawn : int
+        How often the page has been drawn, and what the lens shows.
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -45,8 +50,11 @@ class Canvas:
         self._uploaded: object = None
         self._edited: Editing | None = None  # whose dots are on the GPU
         self._selected: NDArray[np.int64] = np.empty(0, np.int64)
+        self._lens: LensPass | None = None  # with the first look through it
+        self._glass: Glass | None = None  # of this frame
+        self._lens_drawn: object = None
         self.patch = Patch(ctx)
-        self.n_drawn = 0
+        self.n_drawn = self.n_lens_drawn = 0
 
     def show(
         self, area: Rect, size_px: Size, preview: Preview | None, camera: Camera, ratio: float
@@ -65,6 +73,26 @@ class Canvas:
         self.patch.place(preview, self._made, camera, size_px)
         self.patch.show(area, ratio)
 
+    def show_lens(self, area: Rect, glass: Glass, scale: float, ratio: float) -> None:
+        """Put a lens over the picture for this frame; `draw` fills it in.
+
+        Parameters
+        ----------
+        scale : float
+            ImGui's units for each of the theme's pixels.
+        ratio : float
+            Pixels of the canvas for each of ImGui's.
+        """
+        self._glass = glass
+        lens = self._lens_of(glass.diameter_px, scale * ratio)
+        low = [area[k] + (glass.corner_px[k] - lens.margin_px) / ratio for k in (0, 1)]
+        high = [low[k] + lens.texture.width / ratio for k in (0, 1)]
+        draw = imgui.get_background_draw_list()
+        draw.push_clip_rect(area[:2], area[2:], True)
+        texture = imgui.ImTextureRef(lens.texture.glo)
+        draw.add_image(texture, (low[0], low[1]), (high[0], high[1]), (0.0, 1.0), (1.0, 0.0))
+        draw.pop_clip_rect()
+
     def draw(
         self,
         session: Session,
@@ -78,15 +106,19 @@ class Canvas:
             return False
         size_px = self._texture.size
         content = _content(session, selection)
+        adjustment = session.adjustment if look.reference_opacity else NEUTRAL
         whole = preview if preview is None or preview.footprint is None else None
-        key = (camera, size_px, content, look.theme, look.reference_opacity, whole)
-        is_new = key != self._drawn
+        shown = (content, look.theme, look.reference_opacity, adjustment, look.dots_shown, whole)
+        is_new = (camera, size_px, shown) != self._drawn
         if is_new:
             self._draw_page(session, selection, camera, look, whole)
-            self._drawn = key
+            self._drawn = (camera, size_px, shown)
             self.n_drawn += 1
+        if self._glass is not None and session.drawing is not None:
+            self._draw_lens(self._glass, shown, look, preview)
+        self._glass = None
         if self._made is not None:
-            self.patch.draw(preview, self._made, camera, size_px, look, key)
+            self.patch.draw(preview, self._made, camera, size_px, look, shown)
         return is_new
 
     def _draw_page(
@@ -98,26 +130,60 @@ class Canvas:
         preview: Preview | None,
     ) -> None:
         assert self._target is not None
+        assert self._texture is not None
         if session.drawing is None:
             self._target.use()
             self._target.clear(*look.theme.desk, 1.0)
-        else:
-            renderer = self._renderer()
-            self._upload(renderer, session, selection, session.drawing.page)
-            renderer.set_reference(
-                session.reference if look.reference_shown else None, look.reference_opacity
-            )
-            colours = look.theme
-            renderer.set_preview(preview)
-            renderer.draw(
-                camera,
-                self._target.size,
-                self._target,
-                paper=colours.paper,
-                desk=colours.desk,
-                ink=colours.ink,
-            )
-            renderer.set_preview(None)
+            return
+        renderer, colours = self._renderer(), look.theme
+        self._upload(renderer, session, selection, session.drawing.page)
+        reference = session.reference if look.reference_shown else None
+        renderer.set_reference(
+            reference.picture if reference else None, look.reference_opacity, session.adjustment
+        )
+        renderer.set_preview(preview)
+        renderer.draw(
+            camera,
+            self._texture.size,
+            self._target,
+            paper=colours.paper,
+            desk=colours.desk,
+            ink=colours.ink,
+            dots=look.dots_shown,
+        )
+        renderer.set_preview(None)
+
+    def _draw_lens(self, glass: Glass, shown: object, look: Look, preview: Preview | None) -> None:
+        """Draw what the lens shows, if that is not what it showed the last time."""
+        assert self._lens is not None
+        key = (glass.camera, shown, self._lens, preview)
+        if key == self._lens_drawn:
+            return
+        from stippler.render.lens import Colors
+
+        colours, renderer = look.theme, self._renderer()
+        renderer.set_preview(preview)
+        self._lens.draw(
+            renderer,
+            glass.camera,
+            Colors(colours.paper, colours.desk, colours.ink),
+            dots=look.dots_shown,
+        )
+        renderer.set_preview(None)
+        self._lens_drawn = key
+        self.n_lens_drawn += 1
+
+    def _lens_of(self, diameter_px: int, scale: float) -> LensPass:
+        """Return the lens of a diameter; another size is another lens."""
+        from stippler.render.lens import LensPass
+
+        margin_px, rim_px = round(MARGIN * scale), max(_RIM * scale, 1.0)
+        size = (diameter_px, margin_px, rim_px)
+        if self._lens is None or self._lens.size != size:
+            if self._lens is not None:
+                self._lens.release()
+            self._lens = LensPass(self._ctx, *size)
+        return self._lens
 
     def _renderer(self) -> Renderer:
         """Return the renderer; it is imported late, for the sake of the first frame."""
@@ -176,6 +242,8 @@ class Canvas:
         """Free every GL object."""
         self._free()
         self.patch.close()
+        if self._lens is not None:
+            self._lens.release()
         if self._made is not None:
             self._made.release()
 

@@ -77,7 +77,7 @@ class Patch:
         """Draw it if it would look different; `page` tells states of all the rest apart."""
         if self.box is None or self._target is None:
             return
-        key = (preview, self.box, page)
+        key = (preview, self.box, camera, page)
         if key == self._drawn:
             return
         left, top, right, bottom = self.box
@@ -90,6 +90,7 @@ class Patch:
             paper=look.theme.paper,
             desk=look.theme.desk,
             ink=look.theme.ink,
+            dots=look.dots_shown,
         )
         renderer.set_preview(None)
         self._drawn = key
