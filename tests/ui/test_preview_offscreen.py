@@ -98,6 +98,14 @@ def test_a_press_leaves_what_hovering_showed(opened, name: str) -> None:
     assert np.abs(shown - left).mean() < 0.02
 
 
+def test_the_page_may_be_turned_mirrored_and_zoomed(opened) -> None:
+    view = opened.app.editor.view
+    middle = (view.size_px[0] / 2, view.size_px[1] / 2)
+    turned = view.camera.rotated(0.7, middle, view.size_px).flipped(middle, view.size_px)
+    view.camera = turned.zoomed(1.7, middle, view.size_px)
+    test_a_press_leaves_what_hovering_showed(opened, "stretch")
+
+
 def test_hovering_uploads_nothing_and_rests_with_the_pointer(opened, monkeypatch) -> None:
     take_brush(opened, *BRUSHES["enlarge"])
     canvas = opened.app.editor.canvas
