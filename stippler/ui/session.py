@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 from stippler.errors import ParameterError
 from stippler.ui import work
+from stippler.ui.exports import Exports
 from stippler.ui.messages import ERROR, WARNING, Messages
 from stippler.ui.rates import StepRate
 from stippler.ui.work import Source, Work
@@ -63,6 +64,8 @@ class Session:
         The dots of a job that makes new ones; None when there is no such job.
     revision : int
         Grows whenever the dots to show, the page or the reference change.
+    exports : Exports
+        Which file the drawing was last written to, and whether one is being written.
     """
 
     def __init__(
@@ -77,7 +80,7 @@ class Session:
         make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._worker, self._exporter, self._stipple, self._clock = worker, exporter, stipple, clock
+        self._worker, self._stipple, self._clock = worker, stipple, clock
         self._make_ready = make_ready
         self.plan = plan
         self.tone, self.width_mm = tone, width_mm
@@ -89,13 +92,13 @@ class Session:
         self.radius_mm: NDArray[np.float32] | None = None
         self.revision = 0
         self.messages = Messages(clock)
+        self.exports = Exports(exporter, self.messages)
         self.phase: Phase = "empty"
         self.stage, self.done, self.total = "", 0, 0
         self._asked: Source | None = None  # what the job that runs was asked for
         self._last: Progress | None = None
         self._request: int | None = None
         self._page: Page | None = None  # a page that is asked for
-        self._export_request: int | None = None
         self._steps = StepRate()
 
     # --- what a person does -----------------------------------------------------------------
@@ -130,6 +133,7 @@ class Session:
         self._end_run()
         assert self.drawing is not None
         frozen = replace(self.drawing, dots=editing.begin_run("Relax all"))
+        self.exports.note_job(editing.history.steps[-1])
         self._run(
             "running", "relax", lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
         )
@@ -190,9 +194,8 @@ class Session:
         if self.drawing is None:
             self.messages.say("there is no drawing to export yet", WARNING)
             return
-        drawing = self._snapshot(self.drawing)
-        self._export_request = self._exporter.start(lambda: work.export_drawing(drawing, path, dpi))
-        self.messages.say(f"writing {path.name}")
+        shown = self.editing if self.position_mm is None else None
+        self.exports.start(self._snapshot(self.drawing), path, dpi, shown)
 
     # --- what the workers did ---------------------------------------------------------------
 
@@ -201,9 +204,7 @@ class Session:
         changed = False
         if (update := self._worker.poll()) is not None:
             changed = self.apply(update)
-        if (written := self._exporter.poll()) is not None:
-            changed = self.apply_export(written) or changed
-        return changed
+        return self.exports.poll() or changed
 
     def apply(self, update: Update[Work]) -> bool:
         """Take a job's update; that of an old request changes nothing and returns False."""
@@ -224,17 +225,6 @@ class Session:
             self.messages.say(str(failure), ERROR, failure.__cause__ if failure else None)
         return True
 
-    def apply_export(self, update: Update[Path]) -> bool:
-        """Take an export's update."""
-        if update.request_id != self._export_request or not update.ended:
-            return False
-        self._export_request = None
-        if update.failure is not None:
-            self.messages.say(str(update.failure), ERROR, update.failure.__cause__)
-        elif update.ended == "finished" and update.result is not None:
-            self.messages.say(f"{update.result} is written")
-        return True
-
     # --- what there is to show --------------------------------------------------------------
 
     @property
@@ -245,7 +235,20 @@ class Session:
     @property
     def exporting(self) -> bool:
         """Whether a file is being written."""
-        return self._export_request is not None
+        return self.exports.busy
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether work of a person's hand is in the drawing and not in the file last written."""
+        return self.editing is not None and self.exports.lack(self.editing)
+
+    @property
+    def starts_afresh(self) -> bool:
+        """Whether `start` would read the picture anew, and so begin another drawing."""
+        return self.source is not None and (self.source.tone, self.source.width_mm) != (
+            self.tone,
+            self.width_mm,
+        )
 
     @property
     def relaxing(self) -> bool:
@@ -339,6 +342,7 @@ class Session:
         self.drawing = Drawing.blank(page)
         self.drawing.reference = reference
         self.editing = self.position_mm = self.radius_mm = None
+        self.exports.begin_drawing()
         self.revision += 1
 
     def _end(self, phase: Phase) -> None:
@@ -369,7 +373,8 @@ class Session:
                 self.editing.begin("Stipple")
                 self.editing.remove(np.arange(len(self.editing.dots)))
                 self.editing.insert(made)
-                self.editing.commit()
+                if not self.editing.commit().is_empty:
+                    self.exports.note_job(self.editing.history.steps[-1])
         self.position_mm = self.radius_mm = None
         if self.editing is None:
             self.editing = Editing(self.drawing)
