@@ -9,6 +9,7 @@ import argparse
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -34,7 +35,8 @@ def main() -> None:
     os.close(writes)
     with os.fdopen(reads) as told:
         display = f":{told.readline().strip()}"
-    env = {**os.environ, "DISPLAY": display}
+    settings = tempfile.TemporaryDirectory()  # the editor as it is at first
+    env = {**os.environ, "DISPLAY": display, "STIPPLER_CONFIG_DIR": settings.name}
     sample = ROOT / "assets" / "samples" / "ammonite.png"
     editor = subprocess.Popen(
         [sys.executable, "-c", EDITOR, str(sample), "--dots", chosen.dots],
@@ -53,6 +55,7 @@ def main() -> None:
         editor.wait()
         server.terminate()
         server.wait()
+        settings.cleanup()
 
 
 def wait_until_idle(pid: int) -> None:

@@ -100,4 +100,20 @@ class Exposed:
     """The window has to be drawn anew: uncovered, resized, or on another screen."""
 
 
-Event = Moved | Pressed | Released | Scrolled | KeyDown | KeyUp | FocusLost | Dropped | Exposed
+@dataclass(frozen=True, slots=True)
+class CloseAsked:
+    """The window's close button was pressed; the window stays until it is told to close."""
+
+
+Event = (
+    Moved
+    | Pressed
+    | Released
+    | Scrolled
+    | KeyDown
+    | KeyUp
+    | FocusLost
+    | Dropped
+    | Exposed
+    | CloseAsked
+)

@@ -30,13 +30,15 @@ class Exports:
     ----------
     path : Path or None
         The file that the open drawing was last written to.
+    failed : bool
+        Whether the last export came to nothing.
     """
 
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
+        self.failed = False
         self.begin_drawing()
-        self._mark: object = _NEVER
 
     @property
     def busy(self) -> bool:
@@ -47,7 +49,7 @@ class Exports:
         """Take note that another drawing is open."""
         self.path: Path | None = None
         self._written_mark: object = _NEVER
-        self._mark = _NEVER
+        self._mark: object = _NEVER
         self._jobs: set[Step] = set()
 
     def start(self, drawing: Drawing, path: Path, dpi: float, editing: Editing | None) -> None:
@@ -79,6 +81,7 @@ class Exports:
         if update.request_id != self._request or not update.ended:
             return False
         self._request = None
+        self.failed = update.ended != "finished"
         if update.failure is not None:
             self._messages.say(str(update.failure), ERROR, update.failure.__cause__)
         elif update.ended == "finished" and update.result is not None:

@@ -104,25 +104,27 @@ class Host:
         imgui.backends.glfw_scroll_callback(self._address, 0.0, float(notches))
         self.settle()
 
-    def key(self, name: str, *, ctrl: bool = False) -> None:
+    def key(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Type a key."""
-        self.key_down(name, ctrl=ctrl)
-        self.key_up(name, ctrl=ctrl)
+        self.key_down(name, ctrl=ctrl, shift=shift)
+        self.key_up(name, ctrl=ctrl, shift=shift)
         self.settle()
 
-    def key_down(self, name: str, *, ctrl: bool = False) -> None:
+    def key_down(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Press a key and hold it."""
-        self._key(name, glfw.PRESS, ctrl)
+        self._key(name, glfw.PRESS, ctrl=ctrl, shift=shift)
 
-    def key_up(self, name: str, *, ctrl: bool = False) -> None:
+    def key_up(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Let a key come up."""
-        self._key(name, glfw.RELEASE, ctrl)
+        self._key(name, glfw.RELEASE, ctrl=ctrl, shift=shift)
 
     def type(self, text: str) -> None:
         """Type text into the field that has the keyboard."""
         for sign in text:
+            key = sign if sign.isascii() and sign.isalnum() else "world_1"
+            self._key(key, glfw.PRESS)
             imgui.backends.glfw_char_callback(self._address, ord(sign))
-            self._frame()
+            self._key(key, glfw.RELEASE)
         self.settle()
 
     def fill(self, label: str, text: str) -> None:
@@ -166,8 +168,8 @@ class Host:
         imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, 0)
         self._frame()
 
-    def _key(self, name: str, action: int, ctrl: bool) -> None:
+    def _key(self, name: str, action: int, *, ctrl: bool = False, shift: bool = False) -> None:
         code = getattr(glfw, f"KEY_{name.upper()}")
-        mods = glfw.MOD_CONTROL if ctrl else 0
+        mods = (glfw.MOD_CONTROL if ctrl else 0) | (glfw.MOD_SHIFT if shift else 0)
         imgui.backends.glfw_key_callback(self._address, code, 0, action, mods)
         self._frame()

@@ -125,7 +125,7 @@ def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
 
 def test_a_new_page_is_painted_on(desk) -> None:
     desk.host.key("s")
-    desk.host.drag((640, 300), (660, 300), "left")
+    desk.host.drag((640, 100), (660, 100), "left")
     assert "no page" in desk.host.said()
     desk.host.key("n", ctrl=True)
     desk.host.fill("Page width", "80")

@@ -21,7 +21,7 @@ from stippler.ui.theme import LIGHT, Colour
 pytestmark = pytest.mark.window
 
 SIZE = (1280, 800)
-CANVAS = (342, 0, 1280, 771)
+CANVAS = (342, 24, 1280, 771)
 _PATIENCE_S = 60.0
 
 
@@ -70,11 +70,12 @@ def places() -> Iterator[dict[str, tuple[float, float]]]:
 class Desk:
     """The editor as a process of its own, and hands on it."""
 
-    def __init__(self, display: str, *arguments: str) -> None:
+    def __init__(self, display: str, settings: Path, *arguments: str) -> None:
         self._display = display
         self._env = {**os.environ, "DISPLAY": display}
         self._env.pop("WAYLAND_DISPLAY", None)
         self._env.pop("STIPPLER_SCALE", None)
+        self._env["STIPPLER_CONFIG_DIR"] = str(settings)
         self.process = subprocess.Popen(
             [sys.executable, "-c", "from stippler.cli import main; main()", *arguments],
             env=self._env,
@@ -121,11 +122,11 @@ class Desk:
 
 
 @pytest.fixture
-def start(kernels: None, display: str) -> Iterator[Callable[..., Desk]]:
+def start(kernels: None, display: str, tmp_path: Path) -> Iterator[Callable[..., Desk]]:
     desks: list[Desk] = []
 
     def begin(*arguments: str) -> Desk:
-        desks.append(Desk(display, *arguments))
+        desks.append(Desk(display, tmp_path / "settings", *arguments))
         return desks[-1]
 
     yield begin
