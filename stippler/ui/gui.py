@@ -31,6 +31,7 @@ class Gui:
         io = imgui.get_io()
         io.set_ini_filename("")
         io.set_log_filename("")
+        io.config_ini_settings_save_last_used_date = False
         io.config_flags |= imgui.ConfigFlags_.docking_enable
         io.config_windows_move_from_title_bar_only = True
         io.config_docking_always_tab_bar = False

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.drawing import MAX_PAGE_MM
-from stippler.settings import read_document, write_document, write_text
+from stippler.settings import put_aside, read_document, write_document, write_text
 from stippler.stippling.plan import Plan
 from stippler.ui.look import Look
 from stippler.ui.place import Place
@@ -73,7 +73,11 @@ class Preferences:
         except FileNotFoundError:
             pass
         except (OSError, ValueError) as error:
-            made._complain(f"{LAYOUT_FILE} cannot be read ({error}); the panels are as at first")
+            aside = put_aside(folder / LAYOUT_FILE)
+            made._complain(
+                f"{LAYOUT_FILE} cannot be read ({error}); the panels are as at first, "
+                f"and it is kept as {aside}"
+            )
         return made
 
     def keep(self) -> None:
