@@ -65,14 +65,17 @@ def _display() -> Iterator[dict[str, str]]:
         stderr=subprocess.DEVNULL,
     )
     os.close(writes)
+    settings = tempfile.TemporaryDirectory()  # the editor as it is at first
     try:
         with os.fdopen(reads) as told:
             env = {**os.environ, "DISPLAY": f":{told.readline().strip()}"}
+        env["STIPPLER_CONFIG_DIR"] = settings.name
         env.pop("WAYLAND_DISPLAY", None)
         yield env
     finally:
         server.terminate()
         server.wait()
+        settings.cleanup()
 
 
 @contextlib.contextmanager

@@ -228,9 +228,7 @@ class Editor:
                 self.popups.filing.drop(paths)
             case CloseAsked():
                 self.popups.filing.quit()
-            case KeyDown() if self.popups.takes_keys:
-                self.popups.take(event)
-            case KeyDown() if self.gui.wants_keys:
+            case KeyDown() if self.popups.take(event) or self.gui.wants_keys:
                 pass
             case KeyDown() if self.painting.is_busy or self.painting.leave(event):
                 self._paint(event)

@@ -30,14 +30,14 @@ class Exports:
     ----------
     path : Path or None
         The file that the open drawing was last written to.
-    failed : bool
-        Whether the last export came to nothing.
+    n_written : int
+        How many files have been written so far.
     """
 
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
-        self.failed = False
+        self.n_written = 0
         self.begin_drawing()
 
     @property
@@ -81,10 +81,10 @@ class Exports:
         if update.request_id != self._request or not update.ended:
             return False
         self._request = None
-        self.failed = update.ended != "finished"
         if update.failure is not None:
             self._messages.say(str(update.failure), ERROR, update.failure.__cause__)
         elif update.ended == "finished" and update.result is not None:
+            self.n_written += 1
             if self._mark is not _NEVER:  # else another drawing has been opened meanwhile
                 self.path, self._written_mark = update.result, self._mark
             self._messages.say(f"{update.result} is written")

@@ -18,11 +18,15 @@ _WIDTH = 440.0
 
 @dataclass(slots=True)
 class _Pending:
-    """What is held back, and why: the person is asked, exports, or a file is being written."""
+    """What is held back, and why: the person is asked, exports, or a file is being written.
+
+    `n_written` is how many files had been written when it was held back.
+    """
 
     what: str
     act: Callable[[], None]
     state: Literal["asking", "exporting", "waiting"]
+    n_written: int
 
 
 class Guard:
@@ -59,10 +63,12 @@ class Guard:
         """
         if self._pending is not None:  # asked twice is not answered
             return
-        if self._session.exporting and (leaving or self._session.unsaved):
-            self._pending = _Pending(what, act, "waiting")
-        elif self._session.unsaved:
-            self._pending = _Pending(what, act, "asking")
+        session = self._session
+        n_written = session.exports.n_written
+        if session.exporting and (leaving or session.unsaved):
+            self._pending = _Pending(what, act, "waiting", n_written)
+        elif session.unsaved:
+            self._pending = _Pending(what, act, "asking", n_written)
         else:
             act()
 
@@ -77,9 +83,9 @@ class Guard:
             pass
         elif session.exporting:
             self._draw_wait(widgets)
-        elif session.exports.failed or (session.unsaved and pending.state == "exporting"):
-            self._pending = None  # the file was not written, or none was chosen
-        elif session.unsaved:
+        elif session.exports.n_written == pending.n_written:
+            self._pending = None  # the file could not be written, or none was chosen
+        elif session.unsaved and pending.state == "waiting":
             pending.state = "asking"
         else:
             self._go_on(pending)

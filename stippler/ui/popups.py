@@ -39,26 +39,24 @@ class Popups:
         self.commands: Commands | None = None
 
     @property
-    def takes_keys(self) -> bool:
-        """Whether keys are not for commands now."""
+    def is_open(self) -> bool:
+        """Whether one has the keyboard that lets nothing else have it."""
         return (
             self.dialogs.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
             or self.palette.is_open
             or self.sheet.is_open
-            or self.preferences.waits
         )
 
-    def take(self, event: KeyDown) -> None:
-        """Take a key while one of the windows has the keyboard."""
+    def take(self, event: KeyDown) -> bool:
+        """Take a key; return whether it is for one of the windows, and for no command."""
         assert self.commands is not None
-        if self.preferences.waits:
-            self.preferences.take(event, self.commands)
-        elif self.sheet.is_open:
+        if self.sheet.is_open:
             owner = self.commands.owner(Key(event.key, event.mods))
             if owner is not None and owner.name == "help.keys":
                 self.sheet.ask()
+        return self.is_open or self.preferences.take(event, self.commands)
 
     def draw(self, widgets: Widgets, guarded: Guarded) -> None:
         """Draw what is open; a faulty one leaves the others alone."""

@@ -6,6 +6,8 @@ import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from imgui_bundle import imgui  # noqa: F401  # isort: skip - first: glfw then uses its library
+import glfw
 import numpy as np
 import pytest
 from PIL import Image
@@ -14,6 +16,7 @@ from stippler.app import App
 from stippler.stippling.plan import Plan
 from stippler.ui.host import Host
 from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW
+from stippler.ui.place import Place
 from stippler.ui.preferences import FILE, Preferences
 from stippler.ui.theme import DARK
 from stippler.ui.widgets import Widgets
@@ -176,6 +179,17 @@ def test_a_key_is_changed_used_and_kept(start: Start) -> None:
     assert str(start().app.editor.commands["work.relax"].keys[0]) == "Ctrl+L"
 
 
+def test_escape_closes_the_preferences_and_leaves_the_brush(start: Start) -> None:
+    desk = start()
+    desk.host.key("e")
+    desk.host.key("comma", ctrl=True)
+    desk.host.key("escape")
+    assert not desk.app.editor.popups.preferences.is_open
+    assert desk.app.editor.painting.toolbox.brush is not None
+    desk.host.key("escape")
+    assert desk.app.editor.painting.toolbox.brush is None
+
+
 def test_escape_while_a_key_is_asked_for_closes_nothing(start: Start) -> None:
     desk = start()
     desk.host.key("comma", ctrl=True)
@@ -270,6 +284,20 @@ def test_a_folder_that_cannot_be_written_is_one_line(start: Start, tmp_path: Pat
     assert "settings cannot be kept" in desk.host.said()
 
 
+def test_the_window_is_as_large_as_it_was(kernels: None, tmp_path: Path) -> None:
+    kept = Preferences(tmp_path)
+    kept.place = Place((900, 650))
+    app = App(Plan(), tone="linear", width_mm=50.0, preferences=kept, offscreen=True)
+    try:
+        assert app.window.size_px == (900, 650)
+        app.step(0.0)
+        glfw.set_window_size(app.window._handle, 840, 600)
+        app.step(0.0)
+    finally:
+        app.close()
+    assert Preferences.load(tmp_path).place.size == (840, 600)
+
+
 # --- recent pictures -------------------------------------------------------------------------
 
 
@@ -345,6 +373,15 @@ def test_export_then_close(desk, picture: Path, tmp_path: Path) -> None:
     desk.host.fill("path", str(tmp_path / "kept.csv"))
     desk.host.until(lambda: desk.app.window.wants_to_close, "the end")
     assert len((tmp_path / "kept.csv").read_text().splitlines()) == 1 + left
+
+
+def test_export_then_close_while_dots_relax(desk, picture: Path, tmp_path: Path) -> None:
+    painted(desk, picture)
+    desk.app.session.relax(100_000, weighted=True)
+    desk.host.key("q", ctrl=True)
+    desk.host.click("Export…")
+    desk.host.fill("path", str(tmp_path / "kept.csv"))
+    desk.host.until(lambda: desk.app.window.wants_to_close, "the end")
 
 
 def test_an_export_that_is_cancelled_or_fails_closes_nothing(

@@ -37,7 +37,7 @@ class PreferencesWindow:
         display_scale: Callable[[], float],
     ) -> None:
         self._kept, self._display_scale = kept, display_scale
-        self._focus = self._taken = False
+        self._focus = self._focused = False
         self.keys = KeyList(keep_keys)
         self.is_open = False
 
@@ -45,15 +45,15 @@ class PreferencesWindow:
         """Open the window, or bring it to the front."""
         self.is_open = self._focus = True
 
-    @property
-    def waits(self) -> bool:
-        """Whether the next key is for a command to have."""
-        return self.is_open and self.keys.waits
-
-    def take(self, event: KeyDown, commands: Commands) -> None:
-        """Take the key that a command waits for; Esc then does not close the window."""
-        self.keys.take(event, commands)
-        self._taken = True
+    def take(self, event: KeyDown, commands: Commands) -> bool:
+        """Take the key that a command waits for, or Esc; return whether it was for the window."""
+        if self.is_open and self.keys.waits:
+            self.keys.take(event, commands)
+            return True
+        if self.is_open and self._focused and event.key == "escape":
+            self.is_open = False
+            return True
+        return False
 
     def draw(self, widgets: Widgets, commands: Commands) -> None:
         """Draw the window, if it is open."""
@@ -77,18 +77,12 @@ class PreferencesWindow:
         )
         shown, stays = imgui.begin(TITLE, True, flags)
         self.is_open = bool(stays)
+        self._focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows)
         if shown:
             self._draw_tabs(widgets, commands)
-            if imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows):
-                self._close_by_key()
         imgui.end()
         if not self.is_open:
             self.keys.forget()
-
-    def _close_by_key(self) -> None:
-        if imgui.is_key_pressed(imgui.Key.escape) and not self._taken:
-            self.is_open = False
-        self._taken = False
 
     def _draw_tabs(self, widgets: Widgets, commands: Commands) -> None:
         if not imgui.begin_tab_bar("##tabs"):
