@@ -136,11 +136,11 @@ def _tools(editor: Editor) -> Iterator[Command]:
     for kind in KINDS:
         yield Command(f"tool.{kind.name}", kind.label, chooser(kind.name), (Key(kind.key),),
                       is_on=used(kind.name))  # fmt: skip
-    for name, label, factor, keys in (
-        ("larger", "Larger tip", 1.15, (Key("]"), Key("right_bracket"))),
-        ("smaller", "Smaller tip", 1 / 1.15, (Key("["), Key("left_bracket"))),
+    for name, label, factor, key in (
+        ("larger", "Larger tip", 1.15, Key("]")),
+        ("smaller", "Smaller tip", 1 / 1.15, Key("[")),
     ):
-        yield Command(f"tool.{name}", label, lambda f=factor: toolbox.resize(f), keys)  # type: ignore[misc]
+        yield Command(f"tool.{name}", label, lambda f=factor: toolbox.resize(f), (key,))  # type: ignore[misc]
 
 
 def _view(editor: Editor, session: Session, window: Window) -> Iterator[Command]:

@@ -23,14 +23,8 @@ GROUPS = {
 }
 """The first part of a command's name, and the menu it stands in; in the menu bar's order."""
 
-_SIGNS = {
-    "left_bracket": "[",
-    "right_bracket": "]",
-    "page_up": "Page Up",
-    "page_down": "Page Down",
-    "escape": "Esc",
-}
-_NAMES = {sign.lower(): name for name, sign in _SIGNS.items() if len(sign) > 1}
+_SHOWN = {"page_up": "Page Up", "page_down": "Page Down", "escape": "Esc"}
+_NAMES = {shown.lower(): name for name, shown in _SHOWN.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +44,7 @@ class Key:
             )
             if down
         ]
-        return "+".join([*held, _SIGNS.get(self.key, self.key.capitalize())])
+        return "+".join([*held, _SHOWN.get(self.key, self.key.capitalize())])
 
     @classmethod
     def read(cls, text: str) -> Key:

@@ -11,7 +11,6 @@ from stippler.ui.messages import ERROR, Messages
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.editing import Editing
-    from stippler.drawing.history import Step
     from stippler.jobs.worker import Update, Worker
 
 
@@ -50,17 +49,12 @@ class Exports:
         self.path: Path | None = None
         self._written_mark: object = _NEVER
         self._mark: object = _NEVER
-        self._jobs: set[Step] = set()
 
     def start(self, drawing: Drawing, path: Path, dpi: float, editing: Editing | None) -> None:
         """Write a drawing that nobody changes; `editing` is None where that has other dots."""
         self._request = self._worker.start(lambda: work.export_drawing(drawing, path, dpi))
         self._mark = _mark(editing)
         self._messages.say(f"writing {path.name}")
-
-    def note_job(self, step: Step) -> None:
-        """Take note of a step of the history that no hand has made."""
-        self._jobs.add(step)
 
     def lack(self, editing: Editing) -> bool:
         """Return whether work of a person's hand is in the drawing and not in its file."""
@@ -69,7 +63,7 @@ class Exports:
         if _mark(editing) is self._written_mark:
             return False
         history = editing.history
-        return any(step not in self._jobs for step in history.steps[: history.n_done])
+        return any(not step.of_job for step in history.steps[: history.n_done])
 
     def poll(self) -> bool:
         """Take what the worker has done; return whether anything changed."""

@@ -133,7 +133,6 @@ class Session:
         self._end_run()
         assert self.drawing is not None
         frozen = replace(self.drawing, dots=editing.begin_run("Relax all"))
-        self.exports.note_job(editing.history.steps[-1])
         self._run(
             "running", "relax", lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
         )
@@ -374,7 +373,7 @@ class Session:
                 self.editing.remove(np.arange(len(self.editing.dots)))
                 self.editing.insert(made)
                 if not self.editing.commit().is_empty:
-                    self.exports.note_job(self.editing.history.steps[-1])
+                    self.editing.history.steps[-1].of_job = True
         self.position_mm = self.radius_mm = None
         if self.editing is None:
             self.editing = Editing(self.drawing)

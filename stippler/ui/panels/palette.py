@@ -14,6 +14,7 @@ from stippler.ui.widgets import Widgets
 
 _TITLE = "##palette"
 _WIDTH, _ROWS, _TOP = 520.0, 11, 56.0
+_MOST_HEIGHT = 0.6  # of the window, for the list
 _WORST, _CLOSE = 0.25, 10.0  # of the best fit, and below it; what fits worse is chance
 _FLAGS = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
 
@@ -102,7 +103,8 @@ class Palette:
             return None
         chosen = None
         height = imgui.get_text_line_height() + 10.0 * widgets.scale
-        rows = min(len(self.found), _ROWS)
+        room = imgui.get_main_viewport().work_size.y * _MOST_HEIGHT
+        rows = min(len(self.found), _ROWS, max(int(room / height), 1))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         imgui.begin_child("##found", (0.0, rows * height))
         for k, command in enumerate(self.found):
