@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from stippler.brushes.kinds import KINDS
 from stippler.stippling.plan import Plan
-from stippler.ui.commands import CTRL, CTRL_SHIFT, Command, Commands, Key
+from stippler.ui.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Commands, Key
 from stippler.ui.layout import BRUSH
 from stippler.ui.preferences import SCALES, TONES
 from stippler.ui.session import Session
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 _TEXT_STEP = 1.1
 _RESIZE_PERCENT = 10.0
+_TURN_RAD = math.radians(15.0)
 
 
 def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
@@ -149,6 +151,9 @@ def _view(editor: Editor, session: Session, window: Window) -> Iterator[Command]
     def show_reference() -> None:
         look.reference_shown = not look.reference_shown
 
+    def show_dots() -> None:
+        look.dots_shown = not look.dots_shown
+
     def print_size() -> None:
         view.print_size(window.px_per_mm)
 
@@ -159,11 +164,40 @@ def _view(editor: Editor, session: Session, window: Window) -> Iterator[Command]
 
     yield Command("view.fit", "Fit", view.fit, (Key("f"), Key("home")))
     yield Command("view.print_size", "Print size", print_size, (Key("1"),))
+    yield Command("view.selection", "Zoom to the selection", editor.show_selection,
+                  (Key("f", SHIFT),))  # fmt: skip
     yield Command("view.reference", "Show or hide the picture", show_reference, (Key("r"),),
                   is_on=lambda: look.reference_shown)  # fmt: skip
+    yield Command("view.dots", "Show or hide the dots", show_dots, (Key("d"),),
+                  is_on=lambda: look.dots_shown)  # fmt: skip
+    yield from _turning(editor)
+    yield from _lenses(editor)
     yield Command("view.theme", "Light or dark", look.turn_theme, (Key("t"),))
     yield Command("view.larger", "Larger text and controls", lambda: scale_text(_TEXT_STEP))
     yield Command("view.smaller", "Smaller text and controls", lambda: scale_text(1 / _TEXT_STEP))
+
+
+def _turning(editor: Editor) -> Iterator[Command]:
+    view = editor.view
+    yield Command("view.turn_left", "Turn left", lambda: view.turn(-_TURN_RAD), (Key(","),))
+    yield Command("view.turn_right", "Turn right", lambda: view.turn(_TURN_RAD), (Key("."),))
+    yield Command("view.flip", "Flip", view.flip, (Key("y"), Key("\\")))
+    yield Command("view.upright", "Upright", view.upright, (Key("0"),))
+
+
+def _lenses(editor: Editor) -> Iterator[Command]:
+    look, lens = editor.look, editor.lens_key
+    for name, label, key in (
+        ("reduce", "Reduction lens", Key("z")),
+        ("magnify", "Magnifying lens", Key("q")),
+    ):
+        yield Command(
+            f"view.{name}",
+            label,
+            lambda name=name: lens.switch(name),  # type: ignore[misc]
+            (key,),
+            is_on=lambda name=name: look.lens == name,  # type: ignore[misc]
+        )
 
 
 def _panels(editor: Editor) -> Iterator[Command]:

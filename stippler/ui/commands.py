@@ -24,7 +24,8 @@ GROUPS = {
 """The first part of a command's name, and the menu it stands in; in the menu bar's order."""
 
 _SHOWN = {"page_up": "Page Up", "page_down": "Page Down", "escape": "Esc"}
-_NAMES = {shown.lower(): name for name, shown in _SHOWN.items()}
+_SMALL = {",": "Comma", ".": "Period"}  # hard to see where nothing stands before them
+_NAMES = {shown.lower(): name for name, shown in (_SHOWN | _SMALL).items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +45,8 @@ class Key:
             )
             if down
         ]
-        return "+".join([*held, _SHOWN.get(self.key, self.key.capitalize())])
+        shown = _SHOWN if held else _SHOWN | _SMALL
+        return "+".join([*held, shown.get(self.key, self.key.capitalize())])
 
     @classmethod
     def read(cls, text: str) -> Key:

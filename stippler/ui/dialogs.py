@@ -118,6 +118,10 @@ class Dialogs:
                 lambda chosen: self._checked(chosen, take),
             )
 
+    def dismiss(self) -> None:
+        """Close our own dialog without an answer; the system's is the person's to close."""
+        self._own = self._confirm = None
+
     def draw(self, widgets: Widgets) -> None:
         """Draw the dialog that is open."""
         if self._native is not None and self._native.poll():

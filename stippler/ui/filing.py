@@ -108,6 +108,8 @@ class Filing:
 
     def quit(self) -> None:
         """Close the window."""
+        if not self.guard.is_open:
+            self._dialogs.dismiss()
         self.guard.then("Quitting", self._end, leaving=True)
 
     # --- exporting ----------------------------------------------------------------------------

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 GESTURES = (
     ("Move the page", "Middle button, or Space and drag"),
+    ("Turn the page", "Shift with either of these"),
     ("Zoom at the pointer", "Wheel"),
+    ("A lens for a moment", "Hold its key"),
+    ("Strength of the lens", "Hold its key and wheel"),
     ("Size of the tip", "Shift and drag"),
     ("Size of the tip, in steps", "Ctrl or Alt and wheel"),
     ("Straight line from the last stroke", "Shift and click"),

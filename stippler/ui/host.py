@@ -74,9 +74,9 @@ class Host:
         imgui.backends.glfw_cursor_pos_callback(self._address, float(x), float(y))
         self._frame()
 
-    def press(self, button: str = "left") -> None:
+    def press(self, button: str = "left", *, shift: bool = False) -> None:
         """Press a mouse button."""
-        self._button(button, glfw.PRESS)
+        self._button(button, glfw.PRESS, glfw.MOD_SHIFT if shift else 0)
 
     def release(self, button: str = "left") -> None:
         """Let a mouse button come up."""
@@ -89,10 +89,17 @@ class Host:
         self.release()
         self.settle()
 
-    def drag(self, start: tuple[float, float], end: tuple[float, float], button: str) -> None:
+    def drag(
+        self,
+        start: tuple[float, float],
+        end: tuple[float, float],
+        button: str,
+        *,
+        shift: bool = False,
+    ) -> None:
         """Drag from one place to another."""
         self.move(*start)
-        self.press(button)
+        self.press(button, shift=shift)
         for share in (0.25, 0.5, 0.75, 1.0):
             self.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
         self.release(button)
@@ -164,8 +171,8 @@ class Host:
     def _frame(self) -> None:
         self._step(0.0)
 
-    def _button(self, button: str, action: int) -> None:
-        imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, 0)
+    def _button(self, button: str, action: int, mods: int = 0) -> None:
+        imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, mods)
         self._frame()
 
     def _key(self, name: str, action: int, *, ctrl: bool = False, shift: bool = False) -> None:

@@ -358,6 +358,20 @@ def test_closing_asks_however_often(desk, picture: Path) -> None:
     assert desk.app.window.wants_to_close
 
 
+def test_closing_with_a_dialog_open_asks_in_its_place(desk, picture: Path) -> None:
+    painted(desk, picture)
+    desk.host.key("o", ctrl=True)
+    assert desk.host.shown("path")
+    desk.app.window.press_close()
+    desk.host.settle()
+    assert not desk.host.shown("path")
+    desk.host.click("Export…")
+    desk.app.window.press_close()  # the question is being answered
+    desk.host.settle()
+    assert desk.host.shown("path")
+    assert not desk.app.window.wants_to_close
+
+
 def test_undone_changes_are_none(desk, picture: Path) -> None:
     painted(desk, picture)
     desk.host.key("z", ctrl=True)

@@ -37,6 +37,7 @@ def made(ran: list[str] | None = None) -> Commands:
         (Key("+", CTRL_SHIFT), "Ctrl+Shift++"),
         (Key("+"), "+"),
         (Key(",", CTRL), "Ctrl+,"),
+        (Key(","), "Comma"),
     ],
 )
 def test_a_key_is_read_as_it_is_written(key: Key, text: str) -> None:

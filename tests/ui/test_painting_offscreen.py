@@ -18,8 +18,8 @@ NAMES = [f.name for f in fields(Dots)]
 
 @pytest.fixture(autouse=True)
 def settings_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "config"))
-    return tmp_path / "config"
+    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
+    return tmp_path / "settings"
 
 
 def same(a: Dots, b: Dots) -> bool:
