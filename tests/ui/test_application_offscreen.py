@@ -330,6 +330,7 @@ def test_what_no_hand_has_touched_is_closed_unasked(desk, picture: Path) -> None
     opened(desk, picture)
     desk.app.session.relax(2, weighted=True)
     desk.host.until(lambda: not desk.app.session.busy, "relaxation")
+    desk.host.until(lambda: desk.host.shown("Start"), "the button")
     desk.host.click("Start")  # anew, in place of the dots that are there
     desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
     assert not desk.app.session.unsaved
