@@ -19,6 +19,7 @@ from PIL import ImageGrab
 ROOT = Path(__file__).resolve().parent.parent
 LENS_INPUT = ("click", "--repeat", "7", "--delay", "30", "4", "key", "z")
 CANVAS_LEFT, STATUS_HEIGHT = 342, 28
+CANVAS_TOP = 24
 EDITOR = "from stippler.cli import main; main()"
 
 
@@ -59,7 +60,7 @@ def main() -> None:
         time.sleep(1.0)
         shot = ImageGrab.grab(xdisplay=display).convert("RGB")
         if chosen.lens:
-            shot = shot.crop((CANVAS_LEFT, 0, width, height - STATUS_HEIGHT)).quantize(64)
+            shot = shot.crop((CANVAS_LEFT, CANVAS_TOP, width, height - STATUS_HEIGHT)).quantize(64)
         shot.save(out, optimize=True)
     finally:
         editor.terminate()
