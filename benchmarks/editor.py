@@ -65,14 +65,17 @@ def _display() -> Iterator[dict[str, str]]:
         stderr=subprocess.DEVNULL,
     )
     os.close(writes)
+    settings = tempfile.TemporaryDirectory()  # the editor as it is at first
     try:
         with os.fdopen(reads) as told:
             env = {**os.environ, "DISPLAY": f":{told.readline().strip()}"}
+        env["STIPPLER_CONFIG_DIR"] = settings.name
         env.pop("WAYLAND_DISPLAY", None)
         yield env
     finally:
         server.terminate()
         server.wait()
+        settings.cleanup()
 
 
 @contextlib.contextmanager
@@ -205,13 +208,13 @@ def _own_and_all(
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update
     from stippler.stippling.stipple import Progress
-    from stippler.ui.work import Work
+    from stippler.ui.work import Source, Work
 
     rng = np.random.default_rng(1)
     place = rng.random((_N_DOTS, 2)) * (148.0, 111.0)
     radius = np.full(_N_DOTS, 0.16, np.float32)
     reference = Reference(np.full((111, 148), 0.5, np.float32), 148.0)
-    app.session._request = 1
+    app.session._request, app.session._asked = 1, Source(Path("field.png"), "linear", 148.0)
 
     def tell() -> None:
         moved = place + rng.normal(0, 0.01, place.shape)

@@ -10,6 +10,7 @@ import argparse
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from PIL import ImageGrab
 ROOT = Path(__file__).resolve().parent.parent
 LENS_INPUT = ("click", "--repeat", "7", "--delay", "30", "4", "key", "z")
 CANVAS_LEFT, STATUS_HEIGHT = 342, 28
+CANVAS_TOP = 24
 EDITOR = "from stippler.cli import main; main()"
 
 
@@ -39,7 +41,8 @@ def main() -> None:
     os.close(writes)
     with os.fdopen(reads) as told:
         display = f":{told.readline().strip()}"
-    env = {**os.environ, "DISPLAY": display}
+    settings = tempfile.TemporaryDirectory()  # the editor as it is at first
+    env = {**os.environ, "DISPLAY": display, "STIPPLER_CONFIG_DIR": settings.name}
     sample = ROOT / "assets" / "samples" / "ammonite.png"
     editor = subprocess.Popen(
         [sys.executable, "-c", EDITOR, str(sample), "--dots", chosen.dots],
@@ -57,13 +60,14 @@ def main() -> None:
         time.sleep(1.0)
         shot = ImageGrab.grab(xdisplay=display).convert("RGB")
         if chosen.lens:
-            shot = shot.crop((CANVAS_LEFT, 0, width, height - STATUS_HEIGHT)).quantize(64)
+            shot = shot.crop((CANVAS_LEFT, CANVAS_TOP, width, height - STATUS_HEIGHT)).quantize(64)
         shot.save(out, optimize=True)
     finally:
         editor.terminate()
         editor.wait()
         server.terminate()
         server.wait()
+        settings.cleanup()
 
 
 def wait_until_idle(pid: int) -> None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stippler.jobs.worker import Worker
+from stippler.settings import settings_folder
 from stippler.ui.editor import Editor
+from stippler.ui.place import Place
+from stippler.ui.preferences import Preferences
 from stippler.ui.session import Session
 from stippler.ui.window import Window
 from stippler.ui.work import Work, make_ready, stipple_picture
@@ -16,7 +20,6 @@ from stippler.warm import is_warm
 if TYPE_CHECKING:
     from stippler.stippling.plan import Plan
 
-_SIZE = (1280, 800)
 _FAREWELL_S = 2.0  # for a worker that decodes a large picture; it is let go of after that
 
 
@@ -30,6 +33,10 @@ class App:
     tone : {"linear", "perceptual"}
     width_mm : float
         Of the page.
+    preferences : Preferences, optional
+        What is kept from the last start; without them, nothing is kept for the next.
+    size : (width, height), optional
+        Of the window, instead of the one that is kept.
     offscreen : bool
         Without a display, for tests and screenshots.
     """
@@ -40,10 +47,13 @@ class App:
         *,
         tone: str,
         width_mm: float,
-        size: tuple[int, int] = _SIZE,
+        preferences: Preferences | None = None,
+        size: tuple[int, int] | None = None,
         offscreen: bool = False,
     ) -> None:
-        self.window = Window("Stippler", size, offscreen=offscreen)
+        kept = preferences or Preferences()
+        place = Place(size) if size is not None else kept.place
+        self.window = Window("Stippler", place, offscreen=offscreen)
         self.worker: Worker[Work] = Worker(self.window.wake)
         self.exporter: Worker[Path] = Worker(self.window.wake)
         self.session = Session(
@@ -56,7 +66,7 @@ class App:
             make_ready=partial(make_ready, is_warm=is_warm),
         )
         native = False if offscreen else None
-        self.editor = Editor(self.window, self.session, native_dialogs=native)
+        self.editor = Editor(self.window, self.session, kept, native_dialogs=native)
 
     def step(self, timeout_s: float | None = None) -> bool:
         """Wait for something to do, at most `timeout_s`; draw a frame if there is one to draw."""
@@ -77,15 +87,24 @@ class App:
         self.window.close()
 
 
-def edit(path: Path | None, plan: Plan, *, tone: str, width_mm: float) -> int:
+def edit(
+    path: Path | None, plan: Plan, *, tone: str, width_mm: float, given: Collection[str] = ()
+) -> int:
     """Open the editor on a picture; return the exit code when its window is closed.
+
+    Parameters
+    ----------
+    given : names of the values that were asked for
+        Others are as they were last used.
 
     Raises
     ------
     DisplayError
         If there is no display, or no OpenGL 3.3.
     """
-    app = App(plan, tone=tone, width_mm=width_mm)
+    kept = Preferences.load(settings_folder())
+    plan, tone, width_mm = kept.begin(plan, tone, width_mm, given)
+    app = App(plan, tone=tone, width_mm=width_mm, preferences=kept)
     try:
         app.step()  # a first frame before the worker takes its share of the processor
         if path is not None:

@@ -80,8 +80,26 @@ def _options(
     pass
 
 
+_VALUES = {
+    "dots": "n_dots",
+    "size_range": "size_range_mm",
+    "width": "width_mm",
+    "unweighted": "weighted",
+}
+
+
+def _given(context: typer.Context) -> set[str]:
+    """Return the values that stand on the command line, by the names that plans have for them."""
+    return {
+        _VALUES.get(name, name)
+        for name in context.params
+        if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
+    }
+
+
 @app.command()
 def edit(
+    context: typer.Context,
     file: Annotated[Path | None, typer.Argument(help="A picture; without one, a sample.")] = None,
     dots: Dots = None,
     size_range: SizeRange = None,
@@ -114,7 +132,8 @@ def edit(
         check_picture(file)  # before a window opens
     from stippler.app import edit as open_editor
 
-    raise typer.Exit(open_editor(file or _sample(), plan, tone=tone, width_mm=width))
+    given = _given(context)
+    raise typer.Exit(open_editor(file or _sample(), plan, tone=tone, width_mm=width, given=given))
 
 
 @app.command()

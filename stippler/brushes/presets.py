@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from pathlib import Path
-
-from platformdirs import user_config_path
 
 from stippler.brushes.brush import Brush, first_brushes
 from stippler.brushes.kinds import KINDS
-from stippler.errors import ParameterError, StipplerError
+from stippler.errors import ParameterError
+from stippler.settings import settings_folder, write_document
 
 _VERSION = 1
 
 
 def presets_path() -> Path:
     """Return where the brushes are kept; ``STIPPLER_CONFIG_DIR`` moves it."""
-    base = os.environ.get("STIPPLER_CONFIG_DIR")
-    return (Path(base) if base else user_config_path("stippler")) / "brushes.json"
+    return settings_folder() / "brushes.json"
 
 
 def load_brushes(path: Path) -> tuple[list[Brush], str]:
@@ -56,14 +52,4 @@ def save_brushes(path: Path, brushes: list[Brush]) -> None:
         If it cannot be written.
     """
     document = {"version": _VERSION, "brushes": [brush.as_dict() for brush in brushes]}
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=path.parent, delete=False
-        ) as file:
-            json.dump(document, file, indent=1)
-        os.replace(file.name, path)
-    except OSError as error:
-        raise StipplerError(
-            f"the brushes cannot be kept ({error.strerror})", path, "check the folder"
-        ) from error
+    write_document(path, document)

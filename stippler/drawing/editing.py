@@ -205,7 +205,7 @@ class Editing:
         """Begin a run; return a copy of the dots for the worker."""
         self._no_stroke()
         self.end_run()
-        self._run = Run(self.history.open(label), self.dots, self.revision)
+        self._run = Run(self.history.open(label, of_job=True), self.dots, self.revision)
         return self.dots.copy()
 
     def merge(self, position_mm: NDArray[np.float64]) -> int:

@@ -24,6 +24,8 @@ class Step:
     ----------
     edit : Edit or None
         None while the step is still being made, or lies on disk.
+    of_job : bool
+        Whether no hand but a job has made it, which can make it again.
     """
 
     label: str
@@ -31,6 +33,7 @@ class Step:
     n_bytes: int = 0
     edit: Edit | None = None
     path: Path | None = None
+    of_job: bool = False
 
     @property
     def is_open(self) -> bool:
@@ -78,12 +81,12 @@ class History:
         """Add a step that has just been done; what was undone is gone."""
         self.fill(self.open(edit.label), edit)
 
-    def open(self, label: str) -> Step:
+    def open(self, label: str, *, of_job: bool = False) -> Step:
         """Add a step that is still being made; what was undone is gone."""
         for step in self.steps[self.n_done :]:
             self._forget(step)
         del self.steps[self.n_done :]
-        step = Step(label)
+        step = Step(label, of_job=of_job)
         self.steps.append(step)
         self.n_done += 1
         return step

@@ -18,7 +18,7 @@ PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".gif")
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # what the native dialogs need on Linux
 _LISTED = 400
 _WIDTH, _LIST_HEIGHT = 520.0, 240.0
-_FLAGS = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_title_bar
+POPUP = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_title_bar
 
 
 def has_native_dialogs() -> bool:
@@ -118,6 +118,10 @@ class Dialogs:
                 lambda chosen: self._checked(chosen, take),
             )
 
+    def dismiss(self) -> None:
+        """Close our own dialog without an answer; the system's is the person's to close."""
+        self._own = self._confirm = None
+
     def draw(self, widgets: Widgets) -> None:
         """Draw the dialog that is open."""
         if self._native is not None and self._native.poll():
@@ -137,8 +141,8 @@ class Dialogs:
 
     def _draw_own(self, widgets: Widgets, own: _Own) -> None:
         imgui.open_popup(own.title)
-        _center(_WIDTH * widgets.scale)
-        if not imgui.begin_popup_modal(own.title, None, _FLAGS)[0]:
+        center(_WIDTH * widgets.scale)
+        if not imgui.begin_popup_modal(own.title, None, POPUP)[0]:
             return
         widgets.heading(own.title)
         if own.fresh:
@@ -167,13 +171,11 @@ class Dialogs:
     def _draw_confirm(self, widgets: Widgets, path: Path, take: Callable[[Path], None]) -> None:
         title = "Replace the file?"
         imgui.open_popup(title)
-        _center(420.0 * widgets.scale)
-        if not imgui.begin_popup_modal(title, None, _FLAGS)[0]:
+        center(420.0 * widgets.scale)
+        if not imgui.begin_popup_modal(title, None, POPUP)[0]:
             return
         widgets.heading(title)
-        imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(f"{path.name} is there already.")
-        imgui.pop_text_wrap_pos()
+        widgets.paragraph(f"{path.name} is there already.")
         widgets.caption(str(path.parent))
         replaced, cancelled = _draw_verbs(widgets, "Replace")
         if replaced or cancelled:
@@ -184,7 +186,8 @@ class Dialogs:
             take(path)
 
 
-def _center(width: float) -> None:
+def center(width: float) -> None:
+    """Put the next window in the middle."""
     middle = imgui.get_main_viewport().get_center()
     imgui.set_next_window_pos((middle.x, middle.y), imgui.Cond_.always, (0.5, 0.5))
     imgui.set_next_window_size((width, 0.0))

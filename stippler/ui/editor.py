@@ -4,27 +4,37 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 from imgui_bundle import imgui
 
 from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
+from stippler.errors import StipplerError
 from stippler.ui.actions import commands_for
 from stippler.ui.canvas import Canvas
-from stippler.ui.dialogs import Dialogs, has_native_dialogs
-from stippler.ui.events import Dropped, Event, KeyDown, Moved, Pressed, Released, Scrolled
+from stippler.ui.dialogs import has_native_dialogs
+from stippler.ui.docks import Panels
+from stippler.ui.events import (
+    CloseAsked,
+    Dropped,
+    Event,
+    KeyDown,
+    Moved,
+    Pressed,
+    Released,
+    Scrolled,
+)
 from stippler.ui.gui import Gui
+from stippler.ui.keymap import load_keys
 from stippler.ui.layout import BRUSH, DRAWING, HISTORY, SHAPE, VIEW, Layout
 from stippler.ui.lens import LensKey, place_lens
-from stippler.ui.look import Look
+from stippler.ui.menu import draw_menu
 from stippler.ui.messages import ERROR, WARNING
 from stippler.ui.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.painting import Painting
 from stippler.ui.panels.brush import draw_brush
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.reference import draw_reference
@@ -34,6 +44,8 @@ from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.tools import draw_tools
 from stippler.ui.pen_samples import PenSamples
 from stippler.ui.pointer import Pointer
+from stippler.ui.popups import Popups
+from stippler.ui.preferences import Preferences
 from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule
 from stippler.ui.session import Session
@@ -64,30 +76,42 @@ class Editor:
         self,
         window: Window,
         session: Session,
+        kept: Preferences,
         *,
         native_dialogs: bool | None = None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._window, self._clock = window, clock
-        self.session = session
-        self.look = Look()
+        self.session, self._kept = session, kept
+        self.look = kept.look
         self.look.begin()
         self.view = View(BLANK, window.size_px)
         self.pointer = Pointer(self.view)
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
-        self.dialogs = Dialogs(use_native=native)
-        self.gui = Gui(window, self.look.theme)
+        self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
-        self.new_page = NewPage(session)
+        self.popups = Popups(window, session, kept, use_native=native)
+        self._layout = Layout()
+        self.panels = Panels(
+            {
+                DRAWING: self._draw_drawing,
+                BRUSH: lambda: draw_brush(self.widgets, self.painting, self.commands),
+                SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
+                VIEW: self._draw_view,
+                HISTORY: self._draw_history,
+            },
+            kept.closed,
+        )
         self.lens_key = LensKey(self.look)
-        self.commands = commands_for(self, session, window)
+        self.commands = self.popups.commands = commands_for(self, session, window)
+        self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
-        self._layout, self._schedule, self._rate = Layout(), Schedule(), FrameRate()
-        self._ratio, self._panel_to_show = 1.0, ""
+        self._schedule, self._rate = Schedule(), FrameRate()
+        self._ratio = 1.0
         self._preview: Preview | None = None
         self._last_s = clock()
         self._size_px = window.size_px
@@ -123,8 +147,9 @@ class Editor:
         return True
 
     def close(self) -> None:
-        """Keep the brushes; let go of everything on the GPU. The window stays."""
+        """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
+        self._keep()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
@@ -134,7 +159,7 @@ class Editor:
     def _frame(self, events: list[Event], now_s: float) -> None:
         dt_s, self._last_s = min(now_s - self._last_s, 0.1), now_s
         self._rate.tick(now_s)
-        self.gui.dress(self.look.theme)
+        self.gui.dress(self.look)
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         failure = self.gui.frame(lambda: self._draw_ui(events, dt_s))
         if failure is not None:
@@ -154,9 +179,14 @@ class Editor:
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
         self.lens_key.note_frame(self._window.now_s)
-        self._window.title = f"{self.session.name} – Stippler" if self.session.name else "Stippler"
+        name, changed = self.session.name, "*" if self.session.unsaved else ""
+        self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
+        if self.popups.filing.note_opened():
+            self._keep()
 
     def _draw_ui(self, events: list[Event], dt_s: float) -> None:
+        recent = self.popups.filing.recent
+        self._guarded("the menu", lambda: draw_menu(self.widgets, self.commands, recent))
         area = self._layout.draw(self.gui.scale)
         self._place(area)
         for event in events:
@@ -170,40 +200,38 @@ class Editor:
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
         self._guarded("the tools", self._draw_tools)
-        self._guarded("the panel", self._draw_panel)
-        self._guarded("the brush's panel", self._draw_brush)
-        self._guarded("the shape panel", self._draw_shape)
-        self._guarded("the view's panel", self._draw_view)
-        self._guarded("the history", self._draw_history)
+        self.panels.draw(self._guarded)
+        if not self.panels.is_in_front(SHAPE):
+            self.shaping.let_go()
         if self.session.drawing is None and not self.session.busy:
-            draw_invitation(self.widgets, area)
+            draw_invitation(self.widgets, self.commands, recent(), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
-        self._guarded("the dialog", lambda: self.dialogs.draw(self.widgets))
-        self._guarded("the new page", lambda: self.new_page.draw(self.widgets))
-        if self._panel_to_show:
-            imgui.set_window_focus(self._panel_to_show)
-            self._panel_to_show = ""
+        self.popups.draw(self.widgets, self._guarded)
 
-    def _draw_panel(self) -> None:
-        if imgui.begin(DRAWING, None, imgui.WindowFlags_.no_collapse)[0]:
-            draw_picture(self.widgets, self.session, self.commands)
-            self.widgets.rule()
-            draw_dots(self.widgets, self.session, self.commands)
-        imgui.end()
+    def _draw_drawing(self) -> None:
+        draw_picture(self.widgets, self.session, self.commands)
+        self.widgets.rule()
+        draw_dots(self.widgets, self.session, self.commands)
 
     def _draw_view(self) -> None:
-        if imgui.begin(VIEW, None, imgui.WindowFlags_.no_collapse)[0]:
-            draw_view(self.widgets, self.look, self.view, self.commands)
-            if self.session.reference is not None:
-                self.widgets.rule()
-                draw_reference(self.widgets, self.session, self.look, self.commands)
-        imgui.end()
+        draw_view(self.widgets, self.look, self.view, self.commands)
+        if self.session.reference is not None:
+            self.widgets.rule()
+            draw_reference(self.widgets, self.session, self.look, self.commands)
+
+    def _draw_history(self) -> None:
+        draw_history(self.widgets, self.session, self.painting, self.commands)
 
     def show_panel(self, name: str) -> None:
         """Bring a panel to the front."""
-        self._panel_to_show = name
+        self.panels.show(name)
         self._schedule.note_input(self._clock())
+
+    def reset_panels(self) -> None:
+        """Show every panel where it was at first."""
+        self.panels.show_all()
+        self._layout.reset()
 
     def show_selection(self) -> None:
         """Look at the chosen dots."""
@@ -215,23 +243,6 @@ class Editor:
 
     def _draw_tools(self) -> None:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)
-
-    def _draw_brush(self) -> None:
-        if imgui.begin(BRUSH, None, imgui.WindowFlags_.no_collapse)[0]:
-            draw_brush(self.widgets, self.painting, self.commands)
-        imgui.end()
-
-    def _draw_shape(self) -> None:
-        if imgui.begin(SHAPE, None, imgui.WindowFlags_.no_collapse)[0]:
-            draw_shape(self.widgets, self.shaping, self._samples)
-        else:
-            self.shaping.let_go()
-        imgui.end()
-
-    def _draw_history(self) -> None:
-        if imgui.begin(HISTORY, None, imgui.WindowFlags_.no_collapse)[0]:
-            draw_history(self.widgets, self.session, self.painting, self.commands)
-        imgui.end()
 
     def _draw_overlay(self, area: Rect) -> None:
         draw_overlay(self.painting.toolbox, self.view, area, self._ratio, self.pointer.at_mm)
@@ -278,8 +289,10 @@ class Editor:
             case Scrolled() if self.lens_key.is_held:
                 self.lens_key.strengthen(event.dy)
             case Dropped(paths=paths):
-                self._drop(paths)
-            case KeyDown() if self.gui.wants_keys or self._asks:
+                self.popups.filing.drop(paths)
+            case CloseAsked():
+                self.popups.filing.quit()
+            case KeyDown() if self.popups.take(event) or self.gui.wants_keys:
                 pass
             case KeyDown(key="escape") if self.shaping.let_go():
                 imgui.internal.clear_active_id()
@@ -292,11 +305,6 @@ class Editor:
             case _:
                 self.pointer.take(event, elsewhere=self.gui.wants_pointer)
 
-    @property
-    def _asks(self) -> bool:
-        """Whether a dialog is open."""
-        return self.dialogs.is_open or self.new_page.is_open
-
     def _paint(self, event: Event) -> bool:
         """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
         free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
@@ -306,11 +314,25 @@ class Editor:
             event = self.pointer.local(event)
         return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)
 
-    def _drop(self, paths: tuple[Path, ...]) -> None:
-        if len(paths) > 1:
-            self.session.messages.say(f"one picture at a time; {paths[0].name} is opened", WARNING)
-        if paths:
-            self.session.open(paths[0])
+    # --- what is kept -------------------------------------------------------------------------
+
+    def _load_keys(self) -> None:
+        problems = [self._kept.problem]
+        if self._kept.folder is not None:
+            problems.append(load_keys(self._kept.folder, self.commands))
+        for problem in filter(None, problems):
+            self.session.messages.say(problem, WARNING)
+
+    def _keep(self) -> None:
+        """Write the preferences, if they have changed."""
+        kept = self._kept
+        kept.note_values(self.session)
+        kept.place = self._window.place
+        kept.layout, kept.layout_scale = self.gui.layout, self.gui.scale
+        try:
+            kept.keep()
+        except StipplerError as error:
+            self.session.messages.say(str(error), WARNING)
 
     # --- what may go wrong, and what comes later ----------------------------------------------
 
@@ -336,5 +358,5 @@ class Editor:
             self._schedule.wake_at(now + message.left_s + 0.01)
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
-        if self.dialogs.waiting:
+        if self.popups.dialogs.waiting:
             self._schedule.wake_at(now + _ANSWER_S)

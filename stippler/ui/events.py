@@ -105,6 +105,21 @@ class Exposed:
     """The window has to be drawn anew: uncovered, resized, or on another screen."""
 
 
+@dataclass(frozen=True, slots=True)
+class CloseAsked:
+    """The window's close button was pressed; the window stays until it is told to close."""
+
+
 Event = (
-    Moved | Pressed | Released | Scrolled | KeyDown | KeyUp | FocusLost | Gone | Dropped | Exposed
+    Moved
+    | Pressed
+    | Released
+    | Scrolled
+    | KeyDown
+    | KeyUp
+    | FocusLost
+    | Gone
+    | Dropped
+    | Exposed
+    | CloseAsked
 )

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from imgui_bundle import imgui
 
 from stippler.ui import theme
+from stippler.ui.look import Look
+from stippler.ui.theme import Theme
 from stippler.ui.window import Window
 
 
@@ -18,14 +21,17 @@ class Gui:
     fonts : Fonts
     """
 
-    def __init__(self, window: Window, look: theme.Theme) -> None:
+    def __init__(
+        self, window: Window, look: Look, layout: str = "", layout_scale: float = 0.0
+    ) -> None:
         self._window = window
-        self._look: theme.Theme | None = None
+        self._theme: Theme | None = None
         self._scale = 0.0
         self._context = imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
         io.set_log_filename("")
+        io.config_ini_settings_save_last_used_date = False
         io.config_flags |= imgui.ConfigFlags_.docking_enable
         io.config_windows_move_from_title_bar_only = True
         io.config_docking_always_tab_bar = False
@@ -35,15 +41,28 @@ class Gui:
         io.config_error_recovery_enable_debug_log = True  # ImGui insists on one of the three
         self.fonts = theme.load_fonts()
         self.dress(look)
+        if layout:
+            self.place_panels(rescaled(layout, self._scale / (layout_scale or self._scale)))
         imgui.backends.glfw_init_for_opengl(window.address, True)
         imgui.backends.opengl3_init("#version 330")
 
-    def dress(self, look: theme.Theme) -> None:
-        """Use a theme at the window's present scale; nothing happens if both are in use."""
-        scale = self._window.scale
-        if look is not self._look or scale != self._scale:
-            self._look, self._scale = look, scale
-            theme.apply(look, scale)
+    def dress(self, look: Look) -> None:
+        """Use a theme and a scale; nothing happens if both are in use."""
+        scale = look.scale or self._window.scale
+        if self._scale and scale != self._scale:
+            self.place_panels(rescaled(self.layout, scale / self._scale))
+        if look.theme is not self._theme or scale != self._scale:
+            self._theme, self._scale = look.theme, scale
+            theme.apply(look.theme, scale)
+
+    @property
+    def layout(self) -> str:
+        """Where the panels are, as ImGui writes it down."""
+        return imgui.save_ini_settings_to_memory()
+
+    def place_panels(self, layout: str) -> None:
+        """Put the panels where they were; between two frames."""
+        imgui.load_ini_settings_from_memory(layout)
 
     @property
     def scale(self) -> float:
@@ -84,3 +103,13 @@ class Gui:
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context(self._context)
+
+
+def rescaled(layout: str, factor: float) -> str:
+    """Return a layout whose places and sizes are larger by a factor."""
+
+    def scale(found: re.Match[str]) -> str:
+        x, y = (round(int(value) * factor) for value in found.group(2, 3))
+        return f"{found.group(1)}={x},{y}"
+
+    return re.sub(r"\b(Pos|Size|SizeRef)=(-?\d+),(-?\d+)", scale, layout)

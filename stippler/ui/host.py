@@ -138,8 +138,10 @@ class Host:
     def type(self, text: str) -> None:
         """Type text into the field that has the keyboard."""
         for sign in text:
+            key = sign if sign.isascii() and sign.isalnum() else "world_1"
+            self._key(key, glfw.PRESS)
             imgui.backends.glfw_char_callback(self._address, ord(sign))
-            self._frame()
+            self._key(key, glfw.RELEASE)
         self.settle()
 
     def fill(self, label: str, text: str) -> None:

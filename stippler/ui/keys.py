@@ -9,6 +9,21 @@ import glfw
 
 from stippler.ui.events import Mods
 
+# What the keys print on most keyboards; asked only where the window system does not know.
+_SIGNS = {
+    "apostrophe": "'",
+    "backslash": "\\",
+    "comma": ",",
+    "equal": "=",
+    "grave_accent": "`",
+    "left_bracket": "[",
+    "minus": "-",
+    "period": ".",
+    "right_bracket": "]",
+    "semicolon": ";",
+    "slash": "/",
+}
+
 
 def _key_names() -> dict[int, str]:
     names = {
@@ -18,7 +33,7 @@ def _key_names() -> dict[int, str]:
     }
     # The keypad types the same digits and signs.
     return {
-        value: name[3:] if name.startswith("kp_") and len(name) == 4 else name
+        value: name[3:] if name.startswith("kp_") and len(name) == 4 else _SIGNS.get(name, name)
         for value, name in names.items()
     }
 

@@ -21,18 +21,22 @@ _HOST = (
 
 
 class Layout:
-    """Docks the panels when the first frame is drawn; what is left in the middle is the canvas."""
+    """Docks the panels where they have no place yet; what is left in the middle is the canvas."""
 
     def __init__(self) -> None:
-        self._docked = False
+        self._reset = False
+
+    def reset(self) -> None:
+        """Dock the panels in the next frame as at first."""
+        self._reset = True
 
     def draw(self, scale: float) -> Rect:
         """Draw the dock space; return the canvas, in ImGui's coordinates."""
         viewport = imgui.get_main_viewport()
         strip = STRIP_WIDTH * scale
-        height = max(viewport.size.y - STATUS_HEIGHT * scale, 1.0)
-        size = (max(viewport.size.x - strip, 1.0), height)
-        imgui.set_next_window_pos((viewport.pos.x + strip, viewport.pos.y))
+        height = max(viewport.work_size.y - STATUS_HEIGHT * scale, 1.0)
+        size = (max(viewport.work_size.x - strip, 1.0), height)
+        imgui.set_next_window_pos((viewport.work_pos.x + strip, viewport.work_pos.y))
         imgui.set_next_window_size(size)
         imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
@@ -40,9 +44,9 @@ class Layout:
         imgui.begin("##host", None, _HOST)
         imgui.pop_style_var(3)
         space = imgui.get_id("space")
-        if not self._docked:
+        if self._reset or imgui.internal.dock_builder_get_node(space) is None:
             self._dock(space, size, scale)
-            self._docked = True
+            self._reset = False
         imgui.push_style_var(imgui.StyleVar_.frame_padding, (_TAB_PADDING * scale, 5.0 * scale))
         imgui.push_style_var(imgui.StyleVar_.item_inner_spacing, (2.0 * scale, 4.0 * scale))
         imgui.dock_space(space, (0.0, 0.0), imgui.DockNodeFlags_.passthru_central_node)

@@ -1,4 +1,4 @@
-"""What the person chose to see; saved nowhere yet, and no part of the drawing."""
+"""What the person chose to see; kept for the next time, and no part of the drawing."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ class Look:
 
     Attributes
     ----------
+    scale : float
+        Of text and controls, 1 is at 96 dpi; 0 is what the display tells.
     opacity : float
         Of the reference, 0..1; it is not drawn where `reference_shown` is False.
     lens : {"none", "reduce", "magnify"}
@@ -27,6 +29,7 @@ class Look:
     """
 
     theme: Theme = LIGHT
+    scale: float = 0.0
     dots_shown: bool = True
     reference_shown: bool = False
     opacity: float = 0.35

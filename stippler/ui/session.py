@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.errors import ParameterError
 from stippler.ui import work
+from stippler.ui.exports import Exports
 from stippler.ui.messages import ERROR, WARNING, Messages
 from stippler.ui.rates import StepRate
 from stippler.ui.work import Source, Work
@@ -67,6 +68,8 @@ class Session:
         The dots of a job that makes new ones; None when there is no such job.
     revision : int
         Grows whenever the dots to show, the page or the reference change.
+    exports : Exports
+        Which file the drawing was last written to, and whether one is being written.
     """
 
     def __init__(
@@ -81,7 +84,7 @@ class Session:
         make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._worker, self._exporter, self._stipple, self._clock = worker, exporter, stipple, clock
+        self._worker, self._stipple, self._clock = worker, stipple, clock
         self._make_ready = make_ready
         self.plan = plan
         self.tone, self.width_mm = tone, width_mm
@@ -94,13 +97,13 @@ class Session:
         self.radius_mm: NDArray[np.float32] | None = None
         self.revision = 0
         self.messages = Messages(clock)
+        self.exports = Exports(exporter, self.messages)
         self.phase: Phase = "empty"
         self.stage, self.done, self.total = "", 0, 0
         self._asked: Source | None = None  # what the job that runs was asked for
         self._last: Progress | None = None
         self._request: int | None = None
         self._page: Page | None = None  # a page that is asked for
-        self._export_request: int | None = None
         self._steps = StepRate()
 
     # --- what a person does -----------------------------------------------------------------
@@ -197,9 +200,8 @@ class Session:
         if self.drawing is None:
             self.messages.say("there is no drawing to export yet", WARNING)
             return
-        drawing = self._snapshot(self.drawing)
-        self._export_request = self._exporter.start(lambda: work.export_drawing(drawing, path, dpi))
-        self.messages.say(f"writing {path.name}")
+        shown = self.editing if self.position_mm is None else None
+        self.exports.start(self._snapshot(self.drawing), path, dpi, shown)
 
     # --- what the workers did ---------------------------------------------------------------
 
@@ -208,9 +210,7 @@ class Session:
         changed = False
         if (update := self._worker.poll()) is not None:
             changed = self.apply(update)
-        if (written := self._exporter.poll()) is not None:
-            changed = self.apply_export(written) or changed
-        return changed
+        return self.exports.poll() or changed
 
     def apply(self, update: Update[Work]) -> bool:
         """Take a job's update; that of an old request changes nothing and returns False."""
@@ -231,17 +231,6 @@ class Session:
             self.messages.say(str(failure), ERROR, failure.__cause__ if failure else None)
         return True
 
-    def apply_export(self, update: Update[Path]) -> bool:
-        """Take an export's update."""
-        if update.request_id != self._export_request or not update.ended:
-            return False
-        self._export_request = None
-        if update.failure is not None:
-            self.messages.say(str(update.failure), ERROR, update.failure.__cause__)
-        elif update.ended == "finished" and update.result is not None:
-            self.messages.say(f"{update.result} is written")
-        return True
-
     # --- what there is to show --------------------------------------------------------------
 
     @property
@@ -252,7 +241,18 @@ class Session:
     @property
     def exporting(self) -> bool:
         """Whether a file is being written."""
-        return self._export_request is not None
+        return self.exports.busy
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether work of a person's hand is in the drawing and not in the file last written."""
+        return self.editing is not None and self.exports.lack(self.editing)
+
+    @property
+    def starts_afresh(self) -> bool:
+        """Whether `start` would read the picture anew, and so begin another drawing."""
+        source = self.source
+        return source is not None and not self._as_wanted(source).is_read_as(source)
 
     @property
     def relaxing(self) -> bool:
@@ -361,6 +361,7 @@ class Session:
         self.drawing = Drawing.blank(page)
         self.drawing.reference = reference
         self.editing = self.position_mm = self.radius_mm = None
+        self.exports.begin_drawing()
         self.revision += 1
 
     def _end(self, phase: Phase) -> None:
@@ -391,7 +392,8 @@ class Session:
                 self.editing.begin("Stipple")
                 self.editing.remove(np.arange(len(self.editing.dots)))
                 self.editing.insert(made)
-                self.editing.commit()
+                if not self.editing.commit().is_empty:
+                    self.editing.history.steps[-1].of_job = True
         self.position_mm = self.radius_mm = None
         if self.editing is None:
             self.editing = Editing(self.drawing)

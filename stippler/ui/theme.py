@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 TEXT_PX = 15.0
 SMALL_PX = 13.0
-PANEL_WIDTH = 296.0
+PANEL_WIDTH = 320.0
 STATUS_HEIGHT = 28.0
 STRIP_WIDTH = 46.0
 
@@ -18,6 +18,7 @@ STRIP_WIDTH = 46.0
 ICON_NEW, ICON_OPEN, ICON_SAVE, ICON_DICE = "\uf15b", "\uf07c", "\uf019", "\uf522"
 ICON_PLAY, ICON_PAUSE, ICON_STOP = "\uf04b", "\uf04c", "\uf04d"
 ICON_FIT, ICON_PRINT, ICON_WARNING = "\uf31e", "\uf02f", "\uf071"
+ICON_RESET = "\uf0e2"
 ICON_LIGHT, ICON_DARK = "\uf185", "\uf186"
 ICON_LEFT, ICON_RIGHT = "\uf0e2", "\uf01e"
 _ICON_RANGE = (0xE000, 0xF8FF)
@@ -151,6 +152,7 @@ def _palette(theme: Theme) -> list[tuple[int, Colour, float]]:
         (col.child_bg, theme.panel, 0.0),
         (col.popup_bg, theme.panel, 1.0),
         (col.modal_window_dim_bg, theme.desk, 0.6),
+        (col.menu_bar_bg, theme.panel, 1.0),
         (col.border, theme.line, 1.0),
         (col.separator, theme.line, 1.0),
         (col.separator_hovered, theme.accent, 0.6),

@@ -67,6 +67,12 @@ class Widgets:
         imgui.pop_style_color()
         imgui.pop_font()
 
+    def paragraph(self, text: str) -> None:
+        """Write a text that wraps."""
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+
     def label(self, text: str) -> None:
         """Write what the control to the right is for, and give that the rest of the line."""
         imgui.align_text_to_frame_padding()
@@ -103,6 +109,11 @@ class Widgets:
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 5.0 * self.scale)
         return self.icon_button(name, icon, tip)
 
+    @staticmethod
+    def packed(colour: Colour, alpha: float = 1.0) -> int:
+        """Return a colour as draw lists take it."""
+        return int(imgui.color_convert_float4_to_u32((*colour, alpha)))
+
     # --- controls ---------------------------------------------------------------------------
 
     def button(
@@ -110,12 +121,16 @@ class Widgets:
         label: str,
         tip: str,
         *,
+        name: str = "",
         icon: str = "",
         width: float = 0.0,
         primary: bool = False,
         enabled: bool = True,
     ) -> bool:
-        """Draw a button; return whether it was pressed. A width of -1 takes the rest."""
+        """Draw a button; return whether it was pressed. A width of -1 takes the rest.
+
+        One of several buttons with the same label needs a name.
+        """
         if primary and enabled:
             accent = self.theme.accent
             imgui.push_style_color(imgui.Col_.button, (*accent, 1.0))
@@ -123,11 +138,12 @@ class Widgets:
             imgui.push_style_color(imgui.Col_.button_active, (*accent, 0.76))
             imgui.push_style_color(imgui.Col_.text, (*self.theme.on_accent, 1.0))
         imgui.begin_disabled(not enabled)
-        pressed = imgui.button(f"{icon}  {label}" if icon else label, (width, 0.0))
+        text = f"{icon}  {label}" if icon else label
+        pressed = imgui.button(f"{text}##{name}" if name else text, (width, 0.0))
         imgui.end_disabled()
         if primary and enabled:
             imgui.pop_style_color(4)
-        self.note(label)
+        self.note(name or label)
         self.tip(tip)
         return pressed
 
@@ -204,10 +220,10 @@ class Widgets:
         self.tip(tip)
         return value
 
-    def check(self, label: str, value: bool, tip: str) -> bool:
+    def check(self, label: str, value: bool, tip: str, *, name: str = "") -> bool:
         """Take a yes or no."""
-        _, value = imgui.checkbox(label, value)
-        self.note(label)
+        _, value = imgui.checkbox(f"{label}##{name}" if name else label, value)
+        self.note(name or label)
         self.tip(tip)
         return value
 

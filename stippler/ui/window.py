@@ -25,6 +25,7 @@ from stippler.ui.events import (
     LEFT,
     MIDDLE,
     RIGHT,
+    CloseAsked,
     Dropped,
     Event,
     Exposed,
@@ -39,6 +40,7 @@ from stippler.ui.events import (
     Scrolled,
 )
 from stippler.ui.keys import key_name, mods_of
+from stippler.ui.place import Place, place_of, put
 from stippler.units import px_per_mm
 
 _NULL_PLATFORM = 0x00060005  # GLFW_PLATFORM_NULL, which python's glfw does not name
@@ -80,13 +82,13 @@ class Window:
 
     Parameters
     ----------
-    size : (width, height)
-        Of the window, in screen coordinates (pixels, but on high-dpi screens of some systems).
+    place : Place
+        Size and corner, in screen coordinates (pixels, but on high-dpi screens of some systems).
     offscreen : bool
         Without any display, for tests and screenshots.
     """
 
-    def __init__(self, title: str, size: tuple[int, int], *, offscreen: bool = False) -> None:
+    def __init__(self, title: str, place: Place, *, offscreen: bool = False) -> None:
         self._events: list[Event] = []
         self._pointer = (0.0, 0.0)
         self._errors: list[str] = []
@@ -96,7 +98,9 @@ class Window:
         glfw.set_error_callback(lambda _, text: self._errors.append(_decoded(text)))
         self._start(offscreen)
         try:
-            self._handle = self._open(title, size, offscreen)
+            self._handle = self._open(title, place.size, offscreen)
+            self._place = place
+            put(self._handle, place)
             glfw.make_context_current(self._handle)
             glfw.swap_interval(0 if offscreen else 1)
             self.ctx = self._context()
@@ -160,6 +164,7 @@ class Window:
         glfw.set_window_focus_callback(self._handle, self._on_focus)
         glfw.set_cursor_enter_callback(self._handle, self._on_enter)
         glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]
+        glfw.set_window_close_callback(self._handle, self._on_close)
         exposed = self._on_expose
         glfw.set_window_refresh_callback(self._handle, exposed)
         glfw.set_framebuffer_size_callback(self._handle, exposed)
@@ -198,12 +203,20 @@ class Window:
     def _on_drop(self, _: object, paths: list[str]) -> None:
         self._events.append(Dropped(tuple(Path(path) for path in paths)))
 
+    def _on_close(self, _: object) -> None:
+        glfw.set_window_should_close(self._handle, False)  # the editor may have to ask first
+        self._events.append(CloseAsked())
+
     def _on_expose(self, *_: object) -> None:
         self._events.append(Exposed())
 
     def drop(self, paths: list[Path]) -> None:
         """Take files as if they had been dropped; GLFW cannot be asked to."""
         self._on_drop(None, [str(path) for path in paths])
+
+    def press_close(self) -> None:
+        """Act as if the window's close button had been pressed; GLFW cannot be asked to."""
+        self._on_close(None)
 
     def _held_mods(self) -> Mods:
         def held(*keys: int) -> bool:
@@ -281,10 +294,15 @@ class Window:
 
     @property
     def wants_to_close(self) -> bool:
-        """Whether the person asked to close the window."""
+        """Whether the window is to be closed."""
         return bool(glfw.window_should_close(self._handle))
 
-    def ask_to_close(self) -> None:
+    @property
+    def place(self) -> Place:
+        """Where the window is, to be put there again."""
+        return place_of(self._handle, self._place)
+
+    def end(self) -> None:
         """Close the window after this frame."""
         glfw.set_window_should_close(self._handle, True)
 

@@ -46,6 +46,7 @@ def desk(kernels: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iter
     """An empty editor of 1000 x 700, few dots planned, in a folder of its own."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("STIPPLER_SCALE", raising=False)
+    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
     plan = Plan(n_dots=300, iterations=4)
     app = App(plan, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True)
     try:

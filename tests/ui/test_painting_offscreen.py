@@ -18,8 +18,8 @@ NAMES = [f.name for f in fields(Dots)]
 
 @pytest.fixture(autouse=True)
 def settings_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "config"))
-    return tmp_path / "config"
+    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
+    return tmp_path / "settings"
 
 
 def same(a: Dots, b: Dots) -> bool:
@@ -105,7 +105,7 @@ def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
     session = desk.app.session
     start = editing.dots.copy()
     desk.host.fill("Iterations", "100000")
-    desk.host.click("Relax all")
+    desk.host.key("l", ctrl=True)
     desk.host.until(lambda: session.done > 2, "some steps")
     desk.host.key("k")
     paint(desk, (60, 45), (66, 45))
@@ -125,7 +125,7 @@ def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
 
 def test_a_new_page_is_painted_on(desk) -> None:
     desk.host.key("s")
-    desk.host.drag((640, 300), (660, 300), "left")
+    desk.host.drag((640, 100), (660, 100), "left")
     assert "no page" in desk.host.said()
     desk.host.key("n", ctrl=True)
     desk.host.fill("Page width", "80")

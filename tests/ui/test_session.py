@@ -368,3 +368,77 @@ def test_an_export_that_fails_says_why(stage: Stage, tmp_path: Path) -> None:
     stage.session.poll()
     assert stage.session.messages.log[-1].level == ERROR
     assert not stage.session.exporting
+
+
+# --- what no file holds yet ----------------------------------------------------------------
+
+
+def written(stage: Stage, path: Path) -> None:
+    """Let an export end well."""
+    n = len(stage.exporter.jobs)
+    stage.session.export(path, 300.0)
+    stage.exporter.update = Update(n + 1, path, "finished", None, 1)
+    stage.session.poll()
+
+
+def erased(stage: Stage, *rows: int) -> None:
+    editing = stage.session.editing
+    assert editing is not None
+    editing.begin("Erase")
+    editing.remove(np.array(rows))
+    editing.commit()
+
+
+def test_work_of_a_hand_is_unsaved_until_a_file_holds_it(stage: Stage, tmp_path: Path) -> None:
+    opened(stage, 5)
+    session, path = stage.session, tmp_path / "out.csv"
+    assert not session.unsaved
+    erased(stage, 0)
+    assert session.unsaved
+    written(stage, path)
+    assert not session.unsaved
+    assert session.exports.path == path
+    session.undo()
+    assert not session.unsaved  # nothing of a hand is in the drawing
+    session.redo()
+    erased(stage, 0)
+    assert session.unsaved
+    session.undo()
+    assert not session.unsaved  # as the file has it
+
+
+def test_a_relaxation_after_the_export_is_unsaved_only_with_a_hands_work(
+    stage: Stage, tmp_path: Path
+) -> None:
+    opened(stage, 5)
+    session = stage.session
+    session.relax(1, weighted=True)
+    stage.tell(Work("relax", 1, 1, moved_mm=session.editing.dots.position_mm + 0.01), "finished")
+    assert session.editing.history.n_done == 1
+    assert not session.unsaved
+    erased(stage, 1)
+    written(stage, tmp_path / "out.csv")
+    assert not session.unsaved
+    session.relax(1, weighted=True)
+    assert session.unsaved  # the file's dots are not those that move now
+
+
+def test_a_stroke_under_way_is_unsaved(stage: Stage) -> None:
+    opened(stage, 5)
+    stage.session.editing.begin("Erase")
+    assert stage.session.unsaved
+
+
+def test_an_export_that_ends_when_another_drawing_is_open_is_not_that_drawings(
+    stage: Stage, tmp_path: Path
+) -> None:
+    opened(stage, 5)
+    session, path = stage.session, tmp_path / "out.csv"
+    session.export(path, 300.0)
+    session.open(Path("other.png"))
+    stage.tell(Work("done", 1, 1, reference(), dots(4, "done")), "finished")
+    erased(stage, 0)
+    stage.exporter.update = Update(1, path, "finished", None, 1)
+    session.poll()
+    assert session.exports.path is None
+    assert session.unsaved

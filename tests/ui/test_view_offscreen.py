@@ -16,7 +16,7 @@ PLACE = (650.0, 330.0)
 
 @pytest.fixture(autouse=True)
 def settings_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "config"))
+    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
 
 
 @pytest.fixture

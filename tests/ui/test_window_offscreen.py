@@ -37,7 +37,7 @@ def near(shot: np.ndarray, x: int, y: int, colour: tuple[float, float, float]) -
 def test_an_empty_desk_invites(desk) -> None:
     shot = desk.host.screenshot()
     assert shot.shape == (700, 1000, 3)
-    assert near(shot, 990, 10, LIGHT.desk)
+    assert near(shot, 990, 40, LIGHT.desk)
     assert near(shot, 5, 300, LIGHT.panel)
     text = np.abs(shot[300:360, 560:740] / 255.0 - np.array(LIGHT.desk)).max(axis=2)
     assert (text > 0.2).sum() > 100  # the invitation is written
@@ -151,7 +151,7 @@ def test_a_letter_typed_into_a_field_is_no_command(desk) -> None:
     desk.host.key("enter")
     desk.host.key("t")
     assert desk.app.editor.look.theme is DARK
-    assert near(desk.host.screenshot(), 990, 10, DARK.desk)
+    assert near(desk.host.screenshot(), 990, 40, DARK.desk)
 
 
 def test_the_page_is_drawn_only_when_it_changes(desk, picture: Path) -> None:
@@ -186,11 +186,11 @@ def test_something_else_dropped_is_one_line_and_no_crash(
 
 def test_a_picture_is_opened_by_our_own_dialog(desk, picture: Path) -> None:
     desk.host.key("o", ctrl=True)
-    assert desk.app.editor.dialogs.is_open
+    assert desk.app.editor.popups.dialogs.is_open
     desk.host.until(lambda: desk.host.shown("path"), "the dialog")
     desk.host.settle()
     desk.host.fill("path", str(picture))
-    assert not desk.app.editor.dialogs.is_open
+    assert not desk.app.editor.popups.dialogs.is_open
     desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
     assert desk.app.session.name == "disc.png"
 
@@ -198,10 +198,10 @@ def test_a_picture_is_opened_by_our_own_dialog(desk, picture: Path) -> None:
 def test_the_dialog_lists_pictures_and_escape_closes_it(desk, picture: Path) -> None:
     desk.host.key("o", ctrl=True)
     desk.host.fill("path", f"{picture.parent}/")
-    assert desk.app.editor.dialogs.is_open
+    assert desk.app.editor.popups.dialogs.is_open
     desk.host.until(lambda: desk.host.shown("disc.png"), "the list")
     desk.host.key("escape")
-    assert not desk.app.editor.dialogs.is_open
+    assert not desk.app.editor.popups.dialogs.is_open
     assert not desk.app.session.busy
 
 
@@ -262,10 +262,10 @@ def test_a_faulty_panel_is_told_and_the_editor_lives_on(
         for _ in range(3):
             desk.host.move(*MIDDLE_OF_CANVAS)
         desk.host.settle()
-        assert "the panel failed (ZeroDivisionError: a test's own)" in desk.host.said()
+        assert "the panel Drawing failed (ZeroDivisionError: a test's own)" in desk.host.said()
         assert desk.host.shown("notice")
         assert desk.host.shown("Open")  # what was drawn before it
-    assert sum("the panel failed" in record.message for record in caplog.records) == 1
+    assert sum("the panel Drawing failed" in record.message for record in caplog.records) == 1
     desk.host.move(500, 300)
     desk.host.settle()
     assert desk.host.shown("Start")

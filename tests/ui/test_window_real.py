@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import subprocess
 import sys
@@ -21,7 +22,7 @@ from stippler.ui.theme import LIGHT, Colour
 pytestmark = pytest.mark.window
 
 SIZE = (1280, 800)
-CANVAS = (342, 0, 1280, 771)
+CANVAS = (342, 24, 1280, 771)
 _PATIENCE_S = 60.0
 
 
@@ -67,14 +68,30 @@ def places() -> Iterator[dict[str, tuple[float, float]]]:
         app.close()
 
 
+class _Message(ctypes.Structure):
+    """X's ClientMessage."""
+
+    _fields_ = [
+        ("type", ctypes.c_int),
+        ("serial", ctypes.c_ulong),
+        ("send_event", ctypes.c_int),
+        ("display", ctypes.c_void_p),
+        ("window", ctypes.c_ulong),
+        ("message_type", ctypes.c_ulong),
+        ("format", ctypes.c_int),
+        ("data", ctypes.c_long * 5),
+    ]
+
+
 class Desk:
     """The editor as a process of its own, and hands on it."""
 
-    def __init__(self, display: str, *arguments: str) -> None:
+    def __init__(self, display: str, settings: Path, *arguments: str) -> None:
         self._display = display
         self._env = {**os.environ, "DISPLAY": display}
         self._env.pop("WAYLAND_DISPLAY", None)
         self._env.pop("STIPPLER_SCALE", None)
+        self._env["STIPPLER_CONFIG_DIR"] = str(settings)
         self.process = subprocess.Popen(
             [sys.executable, "-c", "from stippler.cli import main; main()", *arguments],
             env=self._env,
@@ -113,6 +130,26 @@ class Desk:
         window = self.xdotool("search", "--name", "Stippler").partition("\n")[0]
         self.xdotool("windowfocus", "--sync", window)
 
+    def close_button(self) -> None:
+        """Ask as a window manager does."""
+        window = self.xdotool("search", "--name", "Stippler").partition("\n")[0]
+        x11 = ctypes.CDLL("libX11.so.6")
+        x11.XOpenDisplay.restype, x11.XInternAtom.restype = ctypes.c_void_p, ctypes.c_ulong
+        display = ctypes.c_void_p(x11.XOpenDisplay(self._display.encode()))
+        protocols, delete = (
+            x11.XInternAtom(display, name, 0) for name in (b"WM_PROTOCOLS", b"WM_DELETE_WINDOW")
+        )
+        event = _Message(33, 0, 1, display, int(window), protocols, 32, (delete, 0, 0, 0, 0))
+        room = ctypes.create_string_buffer(bytes(event), 192)  # as large as any event
+        x11.XSendEvent(display, ctypes.c_ulong(int(window)), 0, ctypes.c_long(0), room)
+        x11.XSync(display, 0)
+        x11.XCloseDisplay(display)
+
+    def is_dimmed(self) -> bool:
+        """Whether a question takes the light off the rest of the window."""
+        seen = self.shot()[SIZE[1] - 10, SIZE[0] // 3] / 255.0  # in the status bar
+        return bool(np.abs(seen - np.array(LIGHT.panel)).max() > 0.02)
+
     def quit(self) -> tuple[int, str]:
         self.focus()
         self.xdotool("key", "ctrl+q")
@@ -121,11 +158,11 @@ class Desk:
 
 
 @pytest.fixture
-def start(kernels: None, display: str) -> Iterator[Callable[..., Desk]]:
+def start(kernels: None, display: str, tmp_path: Path) -> Iterator[Callable[..., Desk]]:
     desks: list[Desk] = []
 
     def begin(*arguments: str) -> Desk:
-        desks.append(Desk(display, *arguments))
+        desks.append(Desk(display, tmp_path / "settings", *arguments))
         return desks[-1]
 
     yield begin
@@ -181,6 +218,30 @@ def test_the_window_is_closed_while_work_runs(start: Callable[..., Desk], pictur
     until(lambda: desk.title() == "disc.png – Stippler", "the title")
     until(lambda: desk.ink().sum() > 1000, "the first dots")
     assert desk.quit() == (0, "")
+
+
+def test_the_close_button_asks_when_something_was_painted(
+    start: Callable[..., Desk], places: dict[str, tuple[float, float]], picture: Path
+) -> None:
+    desk = start(str(picture), "--dots", "200", "--iterations", "3", "--tone", "linear")
+    until(lambda: desk.title() == "disc.png – Stippler", "the title")
+    until(lambda: desk.has(places["Start"], LIGHT.accent), "the end of the work")
+    desk.focus()
+    desk.xdotool("mousemove", (CANVAS[0] + CANVAS[2]) // 2, (CANVAS[1] + CANVAS[3]) // 2)
+    desk.xdotool("key", "e")
+    desk.xdotool("click", 1)
+    until(lambda: desk.title() == "disc.png* – Stippler", "the mark of a change")
+    for _ in range(2):
+        desk.close_button()
+        until(lambda: desk.is_dimmed(), "the question")
+    desk.focus()
+    desk.xdotool("key", "Escape")
+    until(lambda: not desk.is_dimmed(), "the drawing")
+    desk.xdotool("key", "ctrl+z")
+    until(lambda: desk.title() == "disc.png – Stippler", "the drawing as it was")
+    desk.close_button()
+    _, errors = desk.process.communicate(timeout=_PATIENCE_S)
+    assert (desk.process.returncode, errors) == (0, "")
 
 
 def test_no_display_is_one_line(picture: Path) -> None:

@@ -173,7 +173,7 @@ def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> Non
         primary=not session.busy or session.outdated,
         enabled=session.source is not None or session.busy,
     ):
-        session.start()
+        commands["work.start"].run()
     width = (imgui.get_content_region_avail().x - widgets.gap) / 2
     paused = session.phase == "paused"
     if widgets.button(

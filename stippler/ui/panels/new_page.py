@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from imgui_bundle import imgui
 
 from stippler.drawing.drawing import MAX_PAGE_MM, Page
-from stippler.ui.session import Session
 from stippler.ui.widgets import Widgets
 
 _TITLE = "New page"
@@ -17,8 +17,8 @@ _SIZES = (("A4", 210.0, 297.0), ("A5", 148.0, 210.0), ("A6", 105.0, 148.0))
 class NewPage:
     """Asks for the size of a page, and begins a drawing on it."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, begin: Callable[[Page], None]) -> None:
+        self._begin = begin
         self._wanted = False
         self.is_open = False
         self.width_mm, self.height_mm = 148.0, 210.0
@@ -59,8 +59,8 @@ class NewPage:
         if widgets.button(
             "Begin", "The drawing that is open is closed.", width=width, primary=True
         ):
-            self._session.new(Page(self.width_mm, self.height_mm))
             imgui.close_current_popup()
+            self._begin(Page(self.width_mm, self.height_mm))
         imgui.same_line(0.0, gap)
         if widgets.button("Cancel", "Keep the drawing that is open.", width=width) or (
             imgui.is_key_pressed(imgui.Key.escape)

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from stippler.ui.commands import Command, Commands
 from stippler.ui.messages import ERROR, INFO, Messages
-from stippler.ui.theme import ICON_WARNING
+from stippler.ui.theme import ICON_WARNING, TEXT_PX, Colour
 from stippler.ui.widgets import Rect, Widgets
 
+_INVITATION = 340.0
+_AUTO = imgui.WindowFlags_.always_auto_resize
 _FLAGS = (
     imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_docking
     | imgui.WindowFlags_.no_move
     | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.no_focus_on_appearing
-    | imgui.WindowFlags_.always_auto_resize
+    | _AUTO
 )
 
 
@@ -45,15 +48,40 @@ def draw_notice(widgets: Widgets, messages: Messages, canvas: Rect) -> None:
     imgui.pop_style_var()
 
 
-def draw_invitation(widgets: Widgets, canvas: Rect) -> None:
-    """Say how to begin, in the middle of an empty desk."""
+def draw_invitation(
+    widgets: Widgets, commands: Commands, recent: list[Command], canvas: Rect
+) -> None:
+    """Say how to begin, in the middle of an empty desk, and offer the last pictures."""
     x0, y0, x1, y1 = canvas
-    lines = ("Drop a picture here", "or press Ctrl+O to open one")
-    inks = (widgets.theme.text, widgets.theme.faint)
-    background = imgui.get_background_draw_list()
-    y = (y0 + y1) / 2 - imgui.get_text_line_height_with_spacing()
-    for line, ink in zip(lines, inks, strict=True):
-        size = imgui.calc_text_size(line)
-        colour = imgui.color_convert_float4_to_u32((*ink, 0.75))
-        background.add_text(((x0 + x1 - size.x) / 2, y), colour, line)
-        y += imgui.get_text_line_height_with_spacing()
+    width = min(_INVITATION * widgets.scale, x1 - x0)
+    imgui.set_next_window_pos(((x0 + x1) / 2, (y0 + y1) / 2), imgui.Cond_.always, (0.5, 0.5))
+    imgui.set_next_window_size((width, 0.0))
+    imgui.push_style_color(imgui.Col_.button, (*widgets.theme.panel, 1.0))
+    imgui.begin("##invitation", None, (_FLAGS & ~_AUTO) | imgui.WindowFlags_.no_background)
+    imgui.push_font(widgets.fonts.heading, TEXT_PX * 1.2)
+    _write_centred(widgets, "Drop a picture here", widgets.theme.text)
+    imgui.pop_font()
+    _write_centred(widgets, "or begin with one of these", widgets.theme.faint)
+    imgui.dummy((0.0, 2.0 * widgets.scale))
+    half = (imgui.get_content_region_avail().x - widgets.gap) / 2
+    for k, (name, label) in enumerate((("file.open", "Open…"), ("file.new", "New page…"))):
+        if k:
+            imgui.same_line(0.0, widgets.gap)
+        hint = f"{commands[name].hint}."
+        if widgets.button(label, hint, name=f"begin {name}", width=half, primary=not k):
+            commands[name].run()
+    if recent:
+        imgui.dummy((0.0, 2.0 * widgets.scale))
+    for picture in recent:
+        if widgets.button(
+            picture.label.removeprefix("Open "), picture.detail, name=picture.name, width=-1.0
+        ):
+            picture.run()
+    imgui.end()
+    imgui.pop_style_color()
+
+
+def _write_centred(widgets: Widgets, text: str, colour: Colour) -> None:
+    room, left = imgui.get_content_region_avail().x, imgui.get_cursor_pos_x()
+    imgui.set_cursor_pos_x(left + (room - imgui.calc_text_size(text).x) / 2)
+    imgui.text_colored((*colour, 0.85), text)

@@ -42,12 +42,12 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
     imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Export",
-        f"{commands['file.export'].hint}: SVG, PNG or CSV.",
+        f"{commands['file.export_as'].hint}: SVG, PNG or CSV.",
         icon=ICON_SAVE,
         width=width,
         enabled=session.n_dots > 0,
     ):
-        commands["file.export"].run()
+        commands["file.export_as"].run()
     chosen = widgets.segments(
         "Tone", ("Linear", "Perceptual"), _TONES.index(session.tone), _TONE_TIPS
     )

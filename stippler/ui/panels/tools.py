@@ -24,13 +24,16 @@ _FLAGS = (
 def draw_tools(widgets: Widgets, toolbox: Toolbox, commands: Commands) -> None:
     """Draw an icon for each type of brush."""
     viewport, scale = imgui.get_main_viewport(), widgets.scale
-    imgui.set_next_window_pos(viewport.pos)
-    imgui.set_next_window_size((STRIP_WIDTH * scale, viewport.size.y - STATUS_HEIGHT * scale))
+    imgui.set_next_window_pos(viewport.work_pos)
+    height = viewport.work_size.y - STATUS_HEIGHT * scale
+    imgui.set_next_window_size((STRIP_WIDTH * scale, height))
     imgui.push_style_var(imgui.StyleVar_.window_padding, (6.0 * scale, 8.0 * scale))
     imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 3.0 * scale))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+    imgui.push_style_var(imgui.StyleVar_.scrollbar_size, 5.0 * scale)  # beside the buttons
     imgui.begin("##tools", None, _FLAGS & ~imgui.WindowFlags_.no_scrollbar)
-    imgui.pop_style_var(1)
+    imgui.pop_style_var(3)
     used = toolbox.brush.kind if toolbox.brush else ""
     _draw_tool(widgets, commands, "", "tool.none", used == "", "The pointer only looks around.")
     for kind in KINDS:
@@ -50,14 +53,10 @@ def _draw_tool(
     if used or imgui.is_item_hovered():
         fill = theme.accent if used else theme.hovered
         end = (corner.x + side, corner.y + side)
-        draw.add_rect_filled(corner, end, _packed(fill), 6.0 * widgets.scale)
+        draw.add_rect_filled(corner, end, widgets.packed(fill), 6.0 * widgets.scale)
     icon = _ICON * widgets.scale
     gap = (side - icon) / 2
-    colour = _packed(theme.on_accent if used else theme.text)
+    colour = widgets.packed(theme.on_accent if used else theme.text)
     draw_icon(kind, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
     widgets.note(command.label)
     widgets.tip(f"{command.hint}\n{tip}")
-
-
-def _packed(colour: tuple[float, float, float]) -> int:
-    return int(imgui.color_convert_float4_to_u32((*colour, 1.0)))

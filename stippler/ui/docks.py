@@ -1,0 +1,86 @@
+"""The panels: which are shown, and drawing those."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from imgui_bundle import imgui
+
+Guarded = Callable[[str, Callable[[], None]], None]
+
+
+class Panels:
+    """Windows that are docked, moved, closed and opened again by the person.
+
+    Parameters
+    ----------
+    parts : mapping of name to callable
+        What each draws into its window.
+    closed : list of str
+        Names of those that are not shown; kept up to date.
+    """
+
+    def __init__(self, parts: Mapping[str, Callable[[], None]], closed: list[str]) -> None:
+        self._parts, self._closed = parts, closed
+        self._to_show = ""
+        self._in_front: set[str] = set()
+        self._home = 0  # where the first panel is docked
+
+    @property
+    def names(self) -> list[str]:
+        """All panels."""
+        return list(self._parts)
+
+    def is_open(self, name: str) -> bool:
+        """Return whether a panel is shown."""
+        return name not in self._closed
+
+    def show(self, name: str) -> None:
+        """Open a panel, and bring it to the front."""
+        if name in self._closed:
+            self._closed.remove(name)
+        self._to_show = name
+
+    def is_in_front(self, name: str) -> bool:
+        """Return whether a panel's controls were drawn in the last frame."""
+        return name in self._in_front
+
+    def toggle(self, name: str) -> None:
+        """Open a panel, or close it."""
+        if self.is_open(name):
+            self._close(name)
+        else:
+            self.show(name)
+
+    def show_all(self) -> None:
+        """Open every panel."""
+        self._closed.clear()
+
+    def draw(self, guarded: Guarded) -> None:
+        """Draw the panels that are shown; a faulty one leaves the others alone."""
+        for name, draw in self._parts.items():
+            if self.is_open(name):
+                guarded(f"the panel {name}", lambda name=name, draw=draw: self._draw(name, draw))  # type: ignore[misc]
+        if self._to_show:
+            imgui.set_window_focus(self._to_show)
+            self._to_show = ""
+
+    def _draw(self, name: str, draw: Callable[[], None]) -> None:
+        if self._home:  # a panel that has never had a place
+            imgui.set_next_window_dock_id(self._home, imgui.Cond_.first_use_ever)
+        # only a tab in front has a cross: with one on each, they would not fit in a row
+        cross = True if name in self._in_front else None
+        shown, stays = imgui.begin(name, cross, imgui.WindowFlags_.no_collapse)
+        self._home = self._home or imgui.get_window_dock_id()
+        if shown:
+            self._in_front.add(name)
+            draw()
+        else:
+            self._in_front.discard(name)
+        imgui.end()
+        if stays is False:
+            self._close(name)
+
+    def _close(self, name: str) -> None:
+        self._closed.append(name)
+        self._in_front.discard(name)
