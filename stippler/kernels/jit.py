@@ -26,7 +26,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba.core.config  # its names appear at run time
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-_INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER: dict[str, Any] = {
+    **_OPTIONS,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "_nrt": False,  # no counting of references: only kernels make arrays, and they outlive the call
+}
 
 _setting = threading.Lock()  # window and worker import kernels at the same time
 
@@ -48,7 +53,7 @@ def kernel(function: Function) -> Function:
 
 def inline(function: Function) -> Function:
     """Compile a function that is inlined by LLVM into every kernel that calls it."""
-    compiled: Function = numba.njit(forceinline=True, **_OPTIONS)(function)
+    compiled: Function = numba.njit(forceinline=True, **_INNER)(function)
     return compiled
 
 

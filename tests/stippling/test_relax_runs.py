@@ -76,6 +76,30 @@ def test_stars_survive_dots_that_run(monkeypatch):
         assert np.abs(engine.points - want).max() <= 1e-9 * engine._cells.spacing
 
 
+def clusters(n, spread, seed=0):
+    """Dots in five tight clusters, and a few far from all of them."""
+    rng = np.random.default_rng(seed)
+    centres = rng.uniform(1, 9, (5, 2))
+    tight = centres[rng.integers(0, 5, n)] + spread * rng.standard_normal((n, 2))
+    xy = np.vstack([tight, rng.uniform(0, 10, (20, 2))])
+    return xy[shapely.contains_xy(HOLED, xy[:, 0], xy[:, 1])]
+
+
+def test_stars_survive_clusters_that_spread(monkeypatch):
+    """Crowded grid cells whose dots have gone on since they were sorted into them."""
+    points = clusters(1500, 0.1)
+    monkeypatch.setattr(cells, "MOST_TODO", 2.0)
+    monkeypatch.setattr(cells, "KEEP_BELOW", 10.0)
+    monkeypatch.setattr(cells, "SLACK", 3.0)
+    engine = Relaxation(points, HOLED)
+    n_old = 0
+    for want in from_nothing(monkeypatch, points, HOLED, steps=12):
+        engine.step()
+        n_old += len(engine._cells._crowd) > 0 and engine._cells._slack > engine._cells.spacing
+        assert np.abs(engine.points - want).max() <= 1e-9 * engine._cells.spacing
+    assert n_old >= 2, "no crowd was old"
+
+
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 300))
 @settings(max_examples=25)
 def test_energy_never_rises(seed, n):
