@@ -13,7 +13,7 @@ closer together than rounding, and either answer is right to rounding.
 
 from __future__ import annotations
 
-from stippler.kernels.jit import ZERO, inline, inner
+from stippler.kernels.jit import ZERO, inline, inner, merged
 from stippler.kernels.tables import F8, Border, Pads
 
 _ENTER, _LEAVE, _FIRST, _END, _KEPT = 0, 1, 2, 3, 4
@@ -266,7 +266,7 @@ def _put_loops(
     return n, is_ringed
 
 
-@inner
+@merged
 def outline_piece(
     m: int, x: float, y: float, border: Border, pads: Pads, n_near: int, stamp: int, near2: float
 ) -> tuple[int, int]:

@@ -45,7 +45,7 @@ def levels_of(n: int) -> int:
     level = ZERO
     while n > LEAF << level:
         level += 1
-    return level
+    return int(level)
 
 
 @inline
@@ -171,7 +171,7 @@ def cut_lanes_by_crowd(
 @inner
 def _cut_lanes_by_cells(
     U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot, row: int, first: int,
-    last: int, least: float, limit: float, skip: int, is_first: bool,
+    last: int, least: float, limit: float, skip: int,
 ) -> int:  # fmt: skip
     """Cut a cell by the dots of a run of grid cells of which some are crowds."""
     for column in range(first, last + 1):
@@ -179,7 +179,7 @@ def _cut_lanes_by_cells(
         if cell == skip:
             continue
         if grid.tree_of_cell[cell] >= 0:
-            if is_first:
+            if least <= APART:
                 m = cut_lanes_by_crowd(U, V, N, m, dots, grid, spot.x, spot.y, cell)
         elif distance2_to_span(spot, row, column, column, grid.slack) < limit:
             start, end = grid.cell_start[cell], grid.cell_start[cell + 1]
@@ -194,17 +194,17 @@ def _cut_lanes_by_cells(
 @inline
 def cut_lanes_by_span(
     U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot, row: int, first: int,
-    last: int, least: float, limit: float, skip: int, is_first: bool,
+    last: int, least: float, limit: float, skip: int,
 ) -> int:  # fmt: skip
     """Cut a cell by the dots of grid cells first..last of a row; return its corners.
 
     Only dots with ``least <= distance² < limit`` count; but a crowd is cut by as a whole if
-    `is_first`, and else not at all. Grid cell `skip` is left out.
+    `least` leaves out none, and else not at all. Grid cell `skip` is left out.
     """
     a = spot.first_cell + row * spot.nx
     start, end = grid.cell_start[a + first], grid.cell_start[a + last + 1]
     if end - start > CROWD and len(grid.tree_of_cell) > 0:
         return _cut_lanes_by_cells(
-            U, V, N, m, dots, grid, spot, row, first, last, least, limit, skip, is_first
+            U, V, N, m, dots, grid, spot, row, first, last, least, limit, skip
         )
     return cut_lanes_by_run(U, V, N, m, dots.x, dots.y, spot.x, spot.y, start, end, least, limit)

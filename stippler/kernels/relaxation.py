@@ -24,7 +24,7 @@ from stippler.kernels.border import (
 )
 from stippler.kernels.crowds import cut_lanes_by_crowd
 from stippler.kernels.grid import seen_distance, spot_of
-from stippler.kernels.jit import ZERO, inline, inner, kernel
+from stippler.kernels.jit import ZERO, bare_kernel, inline, merged
 from stippler.kernels.rings import cut_cell_by_ring, cut_lanes_by_ring
 from stippler.kernels.simd import (
     BUFFER,
@@ -50,22 +50,10 @@ INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 """What a cell is: bounded by dots alone; by a border as well; not computed."""
 
 
-@kernel
 def relax_dots(
-    start: int,
-    stop: int,
-    which: I4,
-    is_all: bool,
-    dots: Dots,
-    grid: Grid,
-    border: Border,
-    field: Field,
-    corner_cap: int,
-    over: float,
-    moves: Moves,
-    cells: F8,
-    stars: Stars,
-) -> None:
+    start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
+    border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
+) -> None:  # fmt: skip
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
     Parameters
@@ -96,7 +84,7 @@ def relax_dots(
     _relax(start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, pads)
 
 
-@inner
+@bare_kernel
 def _relax(
     start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
     field: Field, over: float, moves: Moves, cells: F8, stars: Stars, pads: Pads,
@@ -145,7 +133,7 @@ def _relax(
         moves.free[i] = free - moves.gone[i]
 
 
-@inline
+@merged
 def _cell_of_dot(
     U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
     pads: Pads,
@@ -211,7 +199,7 @@ def _cell_of_dot(
     return m, is_packed, n_border, n, reach2, free
 
 
-@inline
+@merged
 def _way_to_centroid(
     U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot,
     over: float, i: int, cells: F8, pads: Pads,

@@ -6,7 +6,7 @@ from typing import Any
 
 from stippler.kernels.crowds import APART, cut_lanes_by_span
 from stippler.kernels.grid import distance2_to_span, ring_span
-from stippler.kernels.jit import ZERO, inline, inner
+from stippler.kernels.jit import ZERO, inner, merged
 from stippler.kernels.simd import reach2_of
 from stippler.kernels.tables import F8, Dots, Grid, Spot
 from stippler.kernels.voronoi import OVERFLOW, cut_cell, reach2_of_cell
@@ -15,7 +15,7 @@ NEAR = 0.65
 """Squared distance, in grid cells, of the dots that cut first: fewer cuts are wasted."""
 
 
-@inline
+@merged
 def cut_lanes_by_ring(
     U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot, ring: int, crowd: int
 ) -> int:
@@ -37,9 +37,7 @@ def cut_lanes_by_ring(
                 least = near2
             elif distance2_to_span(spot, row, first, last, grid.slack) >= limit:
                 continue
-        m = cut_lanes_by_span(
-            U, V, N, m, dots, grid, spot, row, first, last, least, limit, crowd, not is_second
-        )
+        m = cut_lanes_by_span(U, V, N, m, dots, grid, spot, row, first, last, least, limit, crowd)
         if m == OVERFLOW:
             break
     return m

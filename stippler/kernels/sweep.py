@@ -12,7 +12,7 @@ import math
 from typing import Any
 
 from stippler.kernels.crowds import APART, cut_lanes_by_span
-from stippler.kernels.jit import inline, inner
+from stippler.kernels.jit import ZERO, inline, inner
 from stippler.kernels.simd import get, reach2_of
 from stippler.kernels.tables import Dots, Grid, Spot
 from stippler.kernels.voronoi import OVERFLOW
@@ -69,7 +69,7 @@ def sweep_rows(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spo
                 p = max(first, spot.ix + SWEEP_FROM)
             if p <= q and m != OVERFLOW:
                 m = cut_lanes_by_span(
-                    U, V, N, m, dots, grid, spot, row, p, q, APART, limit, -1, True
+                    U, V, N, m, dots, grid, spot, row, p, q, APART, limit, ZERO - 1
                 )
         if m == OVERFLOW:
             break

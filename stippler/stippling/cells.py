@@ -150,7 +150,7 @@ class Cells:
         cap, n = CORNER_CAP, self.n if is_all else len(which)
         while n:
             done = run_ranges(
-                relax_dots, n, which, is_all, dots, self._table, self.grid.border, field, cap,
+                relax_dots, n, cap, which, is_all, dots, self._table, self.grid.border, field,
                 self.over, new, cells, stars,
                 grain=GRAIN if is_all else FEW, chunks=8, cancel=cancel,
             )  # fmt: skip

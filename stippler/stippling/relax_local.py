@@ -152,8 +152,8 @@ class LocalRelaxation:
         field, cap = running_sums(None) if len(cells) else self._field, CORNER_CAP
         while len(slots):
             run_ranges(
-                relax_dots, len(slots), slots, False, self._dots, self._table, self._grid.border,
-                field, cap, 1.0, self._moves, cells, _NO_STARS, grain=128, chunks=2,
+                relax_dots, len(slots), cap, slots, False, self._dots, self._table,
+                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, grain=128, chunks=2,
             )  # fmt: skip
             slots = slots[self._moves.kind[slots] == TOO_MANY_CORNERS]
             cap *= 16
