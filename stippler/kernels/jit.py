@@ -64,7 +64,7 @@ def merged(function: Function) -> Function:
 
 def inline(function: Function) -> Function:
     """Compile a function that is inlined by LLVM into every kernel that calls it."""
-    compiled: Function = numba.njit(forceinline=True, **_INNER)(function)
+    compiled: Function = numba.njit(forceinline=True, **_BARE)(function)
     return compiled
 
 
