@@ -102,6 +102,10 @@ def _square(repeats: int) -> list[Figure]:
     if seconds_d3 is not None:
         out.append(Figure("50k, d3-delaunay in node", seconds_d3 * 1e3, "ms", note="peer"))
         out.append(_times_faster("50k, first step against d3-delaunay", seconds_d3, first, 2.5))
+    for method in ("delaunay-mean", "springs"):
+        seconds = least_s(Relaxation(xy, square, method=method).step, 2, warm=0)
+        note = "for comparison"
+        out.append(Figure(f"50k, square, {method}, a step", seconds * 1e3, "ms", note=note))
     return out
 
 

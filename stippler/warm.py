@@ -60,10 +60,22 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
         return Drawing.from_reference(reference, last.position_mm, last.radius_mm)
 
     yield "relaxation and tone", draw
+    yield "clusters", _relax_a_cluster
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
     yield "brushes", rehearse
     yield "files", lambda: _write(draw())
+
+
+def _relax_a_cluster() -> None:
+    """Crowd dots into one cell of their grid."""
+    import numpy as np
+    from shapely.geometry import box
+
+    from stippler.stippling.relax import Relaxation
+
+    dots = np.random.default_rng(0).random((100, 2))
+    Relaxation(0.01 * dots, box(0, 0, 1, 1)).step()
 
 
 def _write(drawing: Drawing) -> None:

@@ -7,55 +7,40 @@ their left, those on the compartment's border first.
 from __future__ import annotations
 
 import math
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from stippler.kernels.clip import outline_piece
 from stippler.kernels.field import integrate_edge
-from stippler.kernels.jit import inline, inner
+from stippler.kernels.jit import ZERO, inline, inner
+from stippler.kernels.simd import get
+from stippler.kernels.tables import F8, I4, Border, Field, Pads, Spot
 from stippler.kernels.voronoi import cut_cell, reach2_of_cell
 
-F8 = NDArray[np.float64]
-I4 = NDArray[np.int32]
-
 
 @inline
-def gather_edges(
-    edge_start: I4,
-    edge_of_slot: I4,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    first_cell: int,
-    near: I4,
-    seen: NDArray[np.int64],
-    stamp: int,
-) -> int:
+def gather_edges(border: Border, spot: Spot, ring: int, pads: Pads, stamp: int) -> int:
     """List the border edges in the grid cells up to `ring`, each once."""
-    n = 0
-    x0, x1 = max(ix - ring, 0), min(ix + ring, nx - 1)
-    for j in range(max(iy - ring, 0), min(iy + ring, ny - 1) + 1):
-        row = first_cell + j * nx
-        for s in range(edge_start[row + x0], edge_start[row + x1 + 1]):
-            e = edge_of_slot[s]
-            if seen[e] != stamp:
-                seen[e] = stamp
-                near[n] = e
+    n = ZERO
+    x0, x1 = max(spot.ix - ring, 0), min(spot.ix + ring, spot.nx - 1)
+    for j in range(max(spot.iy - ring, 0), min(spot.iy + ring, spot.ny - 1) + 1):
+        row = spot.first_cell + j * spot.nx
+        for s in range(border.cell_start[row + x0], border.cell_start[row + x1 + 1]):
+            e = border.edge_of_slot[s]
+            if pads.seen[e] != stamp:
+                pads.seen[e] = stamp
+                pads.near[n] = e
                 n += 1
-    return n
+    return int(n)
 
 
 @inline
-def border_distance(edges: F8, near: I4, n_near: int, x: float, y: float) -> float:
+def border_distance(edge: F8, near: I4, n_near: int, x: float, y: float) -> float:
     """Return the distance of (x, y) from the nearest of the edges listed."""
     best = math.inf
     for s in range(n_near):
         e = near[s]
-        au, av = x - edges[e, 0], y - edges[e, 1]
-        eu, ev = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
+        au, av = x - edge[e, 0], y - edge[e, 1]
+        eu, ev = edge[e, 2] - edge[e, 0], edge[e, 3] - edge[e, 1]
         t = min(max((au * eu + av * ev) / (eu * eu + ev * ev), 0.0), 1.0)
         au -= t * eu
         av -= t * ev
@@ -65,64 +50,31 @@ def border_distance(edges: F8, near: I4, n_near: int, x: float, y: float) -> flo
 
 @inner
 def outline_within(
-    cell: F8,
-    cell2: F8,
-    m: int,
-    x: float,
-    y: float,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    gx: float,
-    gy: float,
-    h: float,
-    edges: F8,
-    next_edge: I4,
-    near: I4,
-    n_near: int,
-    seen: NDArray[np.int64],
-    stamp: int,
-    chains: F8,
-    trace: F8,
-    out: F8,
+    m: int, border: Border, spot: Spot, ring: int, pads: Pads, n_near: int, stamp: int
 ) -> tuple[int, int, float]:
     """Outline the dot's piece of the cell within the rings seen; return its reach, squared, too.
 
     A piece that touches the outermost ring's walls reaches as far as they do, which tells the
     caller to look further.
     """
+    cell2 = pads.cell2
     for r in range(6):
         for k in range(m):
-            cell2[r, k] = cell[r, k]
+            cell2[r, k] = pads.cell[r, k]
     n2 = m
-    if ix - ring > 0:
-        n2 = cut_cell(cell2, n2, -1.0, 0.0, x - (gx + (ix - ring) * h), -1.0)
-    if ix + ring < nx - 1:
-        n2 = cut_cell(cell2, n2, 1.0, 0.0, gx + (ix + ring + 1) * h - x, -1.0)
-    if iy - ring > 0:
-        n2 = cut_cell(cell2, n2, 0.0, -1.0, y - (gy + (iy - ring) * h), -1.0)
-    if iy + ring < ny - 1:
-        n2 = cut_cell(cell2, n2, 0.0, 1.0, gy + (iy + ring + 1) * h - y, -1.0)
-    reach2 = reach2_of_cell(cell2, n2)
-    n_border, n = outline_piece(
-        cell2,
-        n2,
-        x,
-        y,
-        edges,
-        next_edge,
-        near,
-        n_near,
-        stamp + 1,
-        seen,
-        chains,
-        trace,
-        out,
-        1e-24 * reach2,
-    )
+    left, top = spot.gx - spot.x, spot.gy - spot.y
+    if spot.ix - ring > 0:
+        n2 = cut_cell(cell2, n2, -1.0, 0.0, -(left + (spot.ix - ring) * spot.h), -1.0)
+    if spot.ix + ring < spot.nx - 1:
+        n2 = cut_cell(cell2, n2, 1.0, 0.0, left + (spot.ix + ring + 1) * spot.h, -1.0)
+    if spot.iy - ring > 0:
+        n2 = cut_cell(cell2, n2, 0.0, -1.0, -(top + (spot.iy - ring) * spot.h), -1.0)
+    if spot.iy + ring < spot.ny - 1:
+        n2 = cut_cell(cell2, n2, 0.0, 1.0, top + (spot.iy + ring + 1) * spot.h, -1.0)
+    near2 = 1e-24 * reach2_of_cell(cell2, n2)
+    n_border, n = outline_piece(n2, spot.x, spot.y, border, pads, n_near, stamp, near2)
     best = 0.0
+    out = pads.out
     for s in range(n):
         best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
         best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
@@ -130,12 +82,19 @@ def outline_within(
 
 
 @inline
-def outline_of_cell(cell: F8, m: int, out: F8) -> int:
-    """Write the outline of a cell that no border cuts; return its segments."""
+def outline_of_cell(cell: F8, m: int, out: F8) -> None:
+    """Write the outline of a cell that no border cuts."""
     for k in range(m):
         n = k + 1 if k + 1 < m else 0
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
-    return m
+
+
+@inline
+def outline_of_lanes(U: Any, V: Any, m: int, out: F8) -> None:
+    """Write the outline of a cell in lanes that no border cuts."""
+    for k in range(m):
+        n = k + 1 if k + 1 < m else 0
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = get(U, k), get(V, k), get(U, n), get(V, n)
 
 
 @inline
@@ -153,16 +112,15 @@ def sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
 
 
 @inner
-def sum_field(
-    out: F8, n: int, x: float, y: float, mass: F8, moment: F8, frame: F8
-) -> tuple[float, float, float]:
+def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float, float, float]:
     """Return the field's mass over the outline and its first moments about the dot."""
+    frame = field.frame
     ku, kv = 1.0 / frame[2], 1.0 / frame[3]
     px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
     total = mu = mv = 0.0
     for s in range(n):
         m, mx, my = integrate_edge(
-            mass, moment, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
+            field.sums, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
         )
         total += m
         mu += mx

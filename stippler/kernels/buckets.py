@@ -8,14 +8,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stippler.kernels.grid import column_of
 from stippler.kernels.jit import inline, kernel
-
-F8 = NDArray[np.float64]
-I4 = NDArray[np.int32]
+from stippler.kernels.tables import F8, I4
 
 
 @inline

@@ -13,13 +13,8 @@ closer together than rounding, and either answer is right to rounding.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from stippler.kernels.jit import ZERO, inline, inner
-
-F8 = NDArray[np.float64]
-I4 = NDArray[np.int32]
+from stippler.kernels.jit import ZERO, inline, inner, merged
+from stippler.kernels.tables import F8, Border, Pads
 
 _ENTER, _LEAVE, _FIRST, _END, _KEPT = 0, 1, 2, 3, 4
 
@@ -135,25 +130,15 @@ def _hides(cell: F8, m: int, chain: F8, trace: F8, u: float, v: float, near2: fl
 
 @inner
 def _trace_chain(
-    cell: F8,
-    m: int,
-    x: float,
-    y: float,
-    edges: F8,
-    next_edge: I4,
-    e: int,
-    trace: F8,
-    n: int,
-    chain: F8,
-    seen: NDArray[np.int64],
-    stamp: int,
+    m: int, x: float, y: float, border: Border, e: int, n: int, chain: F8, pads: Pads, stamp: int
 ) -> int:
     """Follow the border from an edge that enters the cell to where it leaves it."""
+    cell, edge, trace, seen = pads.cell2, border.edge, pads.trace, pads.seen
     chain[_FIRST] = n
     entering = True
-    for _ in range(len(edges)):
-        au, av = edges[e, 0] - x, edges[e, 1] - y
-        bu, bv = edges[e, 2] - x, edges[e, 3] - y
+    for _ in range(len(edge)):
+        au, av = edge[e, 0] - x, edge[e, 1] - y
+        bu, bv = edge[e, 2] - x, edge[e, 3] - y
         t0, t1, k0, k1 = _clip_edge(cell, m, au, av, bu, bv)
         pu, pv = au, av
         if entering:
@@ -168,7 +153,7 @@ def _trace_chain(
         n = _put(trace, n, pu, pv, bu, bv)
         if k1 >= 0:
             break
-        e = next_edge[e]
+        e = border.next_edge[e]
     chain[_END] = n
     if chain[_ENTER] >= m:
         chain[_ENTER] -= m
@@ -253,107 +238,77 @@ def _put_chains_and_rim(
 
 @inner
 def _put_loops(
-    cell: F8,
-    m: int,
-    x: float,
-    y: float,
-    edges: F8,
-    next_edge: I4,
-    near: I4,
-    n_near: int,
-    chains: F8,
-    n_chains: int,
-    trace: F8,
-    out: F8,
-    n: int,
-    seen: NDArray[np.int64],
+    m: int, x: float, y: float, border: Border, pads: Pads, n_near: int, n_chains: int, n: int,
     stamp: int,
-) -> tuple[int, bool]:
+) -> tuple[int, bool]:  # fmt: skip
     """Append the border loops that lie wholly within the piece; tell if one is its outer ring."""
+    cell, edge, trace, seen, out = pads.cell2, border.edge, pads.trace, pads.seen, pads.out
     is_ringed = False
     for i in range(n_near):
-        e = near[i]
-        au, av = edges[e, 0] - x, edges[e, 1] - y
+        e = pads.near[i]
+        au, av = edge[e, 0] - x, edge[e, 1] - y
         if seen[e] == stamp or not _is_inside(cell, m, au, av):
             continue
         first, twice_area = n, 0.0
         hidden = False
         for c in range(n_chains):
-            hidden = hidden or _hides(cell, m, chains[c], trace, au, av, 0.0)
+            hidden = hidden or _hides(cell, m, pads.chains[c], trace, au, av, 0.0)
         while seen[e] != stamp:
             seen[e] = stamp
-            au, av = edges[e, 0] - x, edges[e, 1] - y
-            bu, bv = edges[e, 2] - x, edges[e, 3] - y
+            au, av = edge[e, 0] - x, edge[e, 1] - y
+            bu, bv = edge[e, 2] - x, edge[e, 3] - y
             twice_area += au * bv - bu * av
             if not hidden:
                 n = _put(out, n, au, av, bu, bv)
-            e = next_edge[e]
+            e = border.next_edge[e]
         if n > first and twice_area > 0.0:
             is_ringed = True
     return n, is_ringed
 
 
-@inner
+@merged
 def outline_piece(
-    cell: F8,
-    m: int,
-    x: float,
-    y: float,
-    edges: F8,
-    next_edge: I4,
-    near: I4,
-    n_near: int,
-    stamp: int,
-    seen: NDArray[np.int64],
-    chains: F8,
-    trace: F8,
-    out: F8,
-    near2: float,
+    m: int, x: float, y: float, border: Border, pads: Pads, n_near: int, stamp: int, near2: float
 ) -> tuple[int, int]:
     """Write the outline of the dot's piece of a cell as directed segments, piece on the left.
 
     Parameters
     ----------
-    cell, m
-        The convex cell about (x, y), see `voronoi`.
-    near, n_near
-        Every border edge that meets the cell is among these, each once.
-    stamp, seen
-        `seen` holds no `stamp` on entry.
-    chains, trace, out
-        Scratch for all chains and segments, and the result.
+    m
+        Corners of the convex cell about (x, y) in ``pads.cell2``, see `voronoi`.
+    n_near
+        Every border edge that meets the cell is among the first of ``pads.near``, each once.
+    stamp
+        ``pads.seen`` holds none on entry.
     near2
         Square of the distance within which the dot counts as on the border, not beyond it.
 
     Returns
     -------
     n_border, n : int
-        ``out[:n_border]`` lies on the border, the rest up to n on the cell's rim.
+        ``pads.out[:n_border]`` lies on the border, the rest up to n on the cell's rim.
     """
+    cell, edge, chains, out = pads.cell2, border.edge, pads.chains, pads.out
     n_chains = n_trace = ZERO
     n_started_inside = 0
     for i in range(n_near):
-        e = near[i]
-        au, av = edges[e, 0] - x, edges[e, 1] - y
-        bu, bv = edges[e, 2] - x, edges[e, 3] - y
+        e = ZERO + pads.near[i]
+        au, av = edge[e, 0] - x, edge[e, 1] - y
+        bu, bv = edge[e, 2] - x, edge[e, 3] - y
         t0, t1, k0, _k1 = _clip_edge(cell, m, au, av, bu, bv)
         if k0 < 0 and t0 <= t1:
             n_started_inside += 1
         elif t0 <= t1:
-            n_trace = _trace_chain(
-                cell, m, x, y, edges, next_edge, e, trace, n_trace, chains[n_chains], seen, stamp
-            )
+            n_trace = _trace_chain(m, x, y, border, e, n_trace, chains[n_chains], pads, stamp)
             n_chains += 1
     for i in range(n_chains):
         n_started_inside -= int(chains[i, _END] - chains[i, _FIRST]) - 1
     if n_chains:
-        n_chains = _drop_hidden(cell, m, chains, n_chains, trace, near2)
-    n_border, n = _put_chains_and_rim(cell, m, chains, n_chains, trace, out)
+        n_chains = _drop_hidden(cell, m, chains, n_chains, pads.trace, near2)
+    n_border, n = _put_chains_and_rim(cell, m, chains, n_chains, pads.trace, out)
     if n_started_inside <= 0:
         return n_border, n
-    n_all, is_ringed = _put_loops(
-        cell, m, x, y, edges, next_edge, near, n_near, chains, n_chains, trace, out, n, seen, stamp
-    )
+    n_all, is_ringed = _put_loops(m, x, y, border, pads, n_near, n_chains, n, stamp)
     if is_ringed:  # the whole outer border lies in this cell: the rim bounds nothing
         for s in range(n, n_all):
             for r in range(4):

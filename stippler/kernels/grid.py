@@ -9,13 +9,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stippler.kernels.jit import inline, kernel
-
-F8 = NDArray[np.float64]
-I4 = NDArray[np.int32]
+from stippler.kernels.tables import F8, I4, Grid, Spot
 
 
 @inline
@@ -136,11 +131,23 @@ def measure_clearance(grid_int: I4, cell_start: I4, clear: I4) -> None:
 
 
 @inline
-def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[int, int, int]:
+def spot_of(x: float, y: float, c: int, grid: Grid) -> Spot:
+    """Return where in the grid of compartment c a place is."""
+    real, whole = grid.real, grid.whole
+    gx, gy, h, inverse = real[c, 0], real[c, 1], real[c, 2], real[c, 3]
+    nx, ny = whole[c, 0], whole[c, 1]
+    ix, iy = column_of(x, gx, inverse, nx), column_of(y, gy, inverse, ny)
+    x0, y0, x1, y1 = real[c, 4] - x, real[c, 5] - y, real[c, 6] - x, real[c, 7] - y
+    return Spot(x, y, ix, iy, nx, ny, whole[c, 2], gx, gy, h, x0, y0, x1, y1)
+
+
+@inline
+def ring_span(ring: int, s: int, spot: Spot) -> tuple[int, int, int]:
     """Return row and first and last column of the s-th run of grid cells of a ring.
 
     Ring 1 includes the dot's own cell. A run off the grid has its last column before its first.
     """
+    ix, iy = spot.ix, spot.iy
     if ring == 1:
         row = iy if s == 0 else iy - 1 if s == 1 else iy + 1
         first, last = ix - 1, ix + 1
@@ -150,51 +157,30 @@ def ring_span(ring: int, s: int, ix: int, iy: int, nx: int, ny: int) -> tuple[in
     else:
         row = iy - ring + 1 + ((s - 2) >> 1)
         first = last = ix + ring if s & 1 else ix - ring
-    if row < 0 or row >= ny:
+    if row < 0 or row >= spot.ny:
         return 0, 0, -1
-    return row, max(first, 0), min(last, nx - 1)
+    return row, max(first, 0), min(last, spot.nx - 1)
 
 
 @inline
-def distance2_to_span(
-    x: float,
-    y: float,
-    row: int,
-    first: int,
-    last: int,
-    gx: float,
-    gy: float,
-    h: float,
-    slack: float,
-) -> float:
+def distance2_to_span(spot: Spot, row: int, first: int, last: int, slack: float) -> float:
     """Return the squared distance to the nearest place a dot of these grid cells can be."""
-    dx = max(max(gx + first * h - x, x - (gx + (last + 1) * h)) - slack, 0.0)
-    dy = max(max(gy + row * h - y, y - (gy + (row + 1) * h)) - slack, 0.0)
+    left, top, h = spot.gx - spot.x, spot.gy - spot.y, spot.h
+    dx = max(max(left + first * h, -(left + (last + 1) * h)) - slack, 0.0)
+    dy = max(max(top + row * h, -(top + (row + 1) * h)) - slack, 0.0)
     return (dx * dx + dy * dy) * (1.0 - 1e-9)
 
 
 @inline
-def seen_distance(
-    x: float,
-    y: float,
-    ring: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    gx: float,
-    gy: float,
-    h: float,
-    slack: float,
-) -> float:
+def seen_distance(spot: Spot, ring: int, slack: float) -> float:
     """Return the distance within which all dots of the compartment are in rings up to `ring`."""
     best = math.inf
-    if ix - ring > 0:
-        best = min(best, x - (gx + (ix - ring) * h))
-    if ix + ring < nx - 1:
-        best = min(best, gx + (ix + ring + 1) * h - x)
-    if iy - ring > 0:
-        best = min(best, y - (gy + (iy - ring) * h))
-    if iy + ring < ny - 1:
-        best = min(best, gy + (iy + ring + 1) * h - y)
+    if spot.ix - ring > 0:
+        best = min(best, spot.x - (spot.gx + (spot.ix - ring) * spot.h))
+    if spot.ix + ring < spot.nx - 1:
+        best = min(best, spot.gx + (spot.ix + ring + 1) * spot.h - spot.x)
+    if spot.iy - ring > 0:
+        best = min(best, spot.y - (spot.gy + (spot.iy - ring) * spot.h))
+    if spot.iy + ring < spot.ny - 1:
+        best = min(best, spot.gy + (spot.iy + ring + 1) * spot.h - spot.y)
     return max(best * (1.0 - 1e-9) - slack, 0.0)

@@ -26,7 +26,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba.core.config  # its names appear at run time
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-_INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_BARE: dict[str, Any] = {**_OPTIONS, "_nrt": False}
+_INNER: dict[str, Any] = {**_BARE, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 _setting = threading.Lock()  # window and worker import kernels at the same time
 
@@ -36,19 +37,34 @@ ZERO: Any = np.int64(0)
 
 def kernel(function: Function) -> Function:
     """Compile a kernel on first use and keep its machine code on disk."""
+    return _compiled(function, _OPTIONS)
+
+
+def bare_kernel(function: Function) -> Function:
+    """Compile a kernel that makes no arrays, so that nothing in it counts references to them."""
+    return _compiled(function, _BARE)
+
+
+def _compiled(function: Function, options: dict[str, Any]) -> Function:
     with _setting:
         before = config.CACHE_DIR
         config.CACHE_DIR = str(module_folder(function.__code__.co_filename))
         try:
-            compiled: Function = numba.njit(cache=True, **_OPTIONS)(function)
+            compiled: Function = numba.njit(cache=True, **options)(function)
         finally:
             config.CACHE_DIR = before
     return compiled
 
 
+def merged(function: Function) -> Function:
+    """Compile a function that numba copies into the one function that calls it: quicker there."""
+    compiled: Function = numba.njit(inline="always", **_INNER)(function)
+    return compiled
+
+
 def inline(function: Function) -> Function:
     """Compile a function that is inlined by LLVM into every kernel that calls it."""
-    compiled: Function = numba.njit(forceinline=True, **_OPTIONS)(function)
+    compiled: Function = numba.njit(forceinline=True, **_BARE)(function)
     return compiled
 
 

@@ -13,6 +13,7 @@ processor passes a value from store to load without delay only where one store w
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from llvmlite import ir
@@ -107,6 +108,10 @@ def _sub(builder: Any, a: Any, b: Any) -> Any:
     return builder.fsub(a, b, flags=_FAST)
 
 
+def _larger(builder: Any, a: Any, b: Any) -> Any:
+    return builder.select(builder.fcmp_ordered(">", a, b), a, b)
+
+
 def _data(context: Any, builder: Any, array_type: Any, array: Any) -> Any:
     return cgutils.create_struct_proxy(array_type)(context, builder, value=array).data
 
@@ -135,6 +140,16 @@ def stack_ints(typing_context: Any, n: Any) -> Any:
         return buffer
 
     return types.CPointer(types.int32)(n), generate
+
+
+@_operation
+def data_of(typing_context: Any, array: Any) -> Any:
+    """Return a pointer to an array's first number; indices from there on are not checked."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _data(context, builder, signature.args[0], args[0])
+
+    return types.CPointer(array.dtype)(array), generate
 
 
 @_operation
@@ -241,12 +256,38 @@ def reach2_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
         zero = ir.Constant(d2.type, [0.0] * LANES)
         d2 = builder.select(_lanes_below(builder, args[2], LANES), d2, zero)
 
-        def larger(a: Any, b: Any) -> Any:
-            return builder.select(builder.fcmp_ordered(">", a, b), a, b)
-
-        return _tree(builder, d2, larger)
+        return _tree(builder, d2, partial(_larger, builder))
 
     return types.float64(us, vs, types.int64), generate
+
+
+@_operation
+def may_cut_from_box(
+    typing_context: Any, us: Any, vs: Any, m: Any, x0: Any, y0: Any, x1: Any, y1: Any
+) -> Any:
+    """Return whether a box reaches into the circle about a corner through the dot, or nearly.
+
+    Only a dot within one of these circles can cut a corner away.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        u = _load(builder, args[0], _I8(FRONT), LANES)
+        v = _load(builder, args[1], _I8(FRONT), LANES)
+        zero = ir.Constant(u.type, [0.0] * LANES)
+        d2 = zero
+        for at, low, high in ((u, args[3], args[5]), (v, args[4], args[6])):
+            d = _larger(builder, _sub(builder, _splat(builder, low, LANES), at), zero)
+            d = _larger(builder, _sub(builder, at, _splat(builder, high, LANES)), d)
+            d2 = _add(builder, d2, _mul(builder, d, d))
+        radius2 = _add(builder, _mul(builder, u, u), _mul(builder, v, v))
+        radius2 = _mul(builder, radius2, ir.Constant(u.type, [1.0 + 1e-9] * LANES))
+        near = builder.fcmp_ordered("<=", d2, radius2)
+        near = builder.and_(near, _lanes_below(builder, args[2], LANES))
+        bits = _mask_bits(builder, near, LANES)
+        return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
+
+    real = types.float64
+    return types.boolean(us, vs, types.int64, real, real, real, real), generate
 
 
 @_operation

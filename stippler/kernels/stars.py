@@ -12,55 +12,41 @@ Delaunay everywhere is Delaunay.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stippler.kernels.border import sum_field
-from stippler.kernels.jit import ZERO, inner, kernel
+from stippler.kernels.border import outline_of_lanes, sum_field
+from stippler.kernels.jit import ZERO, inline, inner, kernel
 from stippler.kernels.relaxation import INNER
 from stippler.kernels.simd import (
     BUFFER,
     LANES,
     corners_of_star,
-    get,
     moments_of,
     outside_box,
     put,
     reach2_of,
     stack_doubles,
 )
-
-F8 = NDArray[np.float64]
-I4 = NDArray[np.int32]
-U1 = NDArray[np.uint8]
+from stippler.kernels.tables import F8, I4, U1, Dots, Field, Grid, Moves, Stars
 
 
 @kernel
 def verify_stars(
     start: int,
     stop: int,
-    xs: F8,
-    ys: F8,
-    fixed: NDArray[np.bool_],
-    compartment_of_dot: I4,
-    grid_real: F8,
-    mass: F8,
-    moment: F8,
-    frame: F8,
+    dots: Dots,
+    grid: Grid,
+    field: Field,
     over: float,
-    star: I4,
-    n_star: U1,
-    kind_of_cell: U1,
-    free_of_dot: F8,
-    new_x: F8,
-    new_y: F8,
-    gone: F8,
+    moves: Moves,
+    stars: Stars,
     todo: U1,
 ) -> None:
     """Move the dots of cells bounded by dots alone whose stars still hold; set `todo` for others.
 
-    Parameters are those of `relaxation.relax_dots`.
+    ``moves.kind`` and ``moves.free`` are those of the step before.
     """
     U, V = stack_doubles(BUFFER), stack_doubles(BUFFER)
     for k in range(BUFFER):
@@ -68,45 +54,51 @@ def verify_stars(
         put(V, k, 0.0)
     out = np.empty((LANES, 4))
     for i in range(start, stop):
-        m = ZERO + n_star[i]
+        m = ZERO + stars.n[i]
         todo[i] = 1
-        if kind_of_cell[i] != INNER or m < 3 or m + 2 > LANES:
+        if moves.kind[i] != INNER or m < 3 or m + 2 > LANES:
             continue
-        x, y = xs[i], ys[i]
-        c = compartment_of_dot[i]
-        x0, y0, x1, y1 = grid_real[c, 4], grid_real[c, 5], grid_real[c, 6], grid_real[c, 7]
-        bad = corners_of_star(xs, ys, star, i, m, x, y, U, V)
+        x, y = dots.x[i], dots.y[i]
+        c = dots.compartment[i]
+        x0, y0, x1, y1 = grid.real[c, 4], grid.real[c, 5], grid.real[c, 6], grid.real[c, 7]
+        bad = corners_of_star(dots.x, dots.y, stars.around, i, m, x, y, U, V)
         beyond = outside_box(U, V, x0 - x, y0 - y, x1 - x, y1 - y)
         if (bad | beyond) & ((1 << m) - 1):
             continue
-        if free_of_dot[i] * abs(free_of_dot[i]) <= reach2_of(U, V, m):
+        if moves.free[i] * abs(moves.free[i]) <= reach2_of(U, V, m):
             continue
         todo[i] = 0
-        new_x[i], new_y[i], gone[i] = x, y, 0.0
-        if fixed[i]:
+        moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
+        if dots.fixed[i]:
             continue
-        area, du, dv = moments_of(U, V, m)
-        area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
-        if len(mass):
-            for k in range(m):
-                out[k, 0], out[k, 1] = get(U, k), get(V, k)
-                out[k, 2], out[k, 3] = get(U, k + 1), get(V, k + 1)
-            out[m - 1, 2], out[m - 1, 3] = get(U, 0), get(V, 0)
-            area, du, dv = sum_field(out, m, x, y, mass, moment, frame)
-        if not area > 0.0:
-            continue
-        du, dv = du / area, dv / area
-        if over != 1.0:
-            for k in range(m):
-                a, b = xs[star[i, k]] - x, ys[star[i, k]] - y
-                if over * (a * du + b * dv) > 0.5 * (a * a + b * b):
-                    break
-            else:
-                du, dv = over * du, over * dv
-        new_x[i] = min(max(x + du, x0), x1)
-        new_y[i] = min(max(y + dv, y0), y1)
-        gone[i] = math.sqrt(du * du + dv * dv)
-        free_of_dot[i] -= gone[i]
+        du, dv = _way_to_centroid(U, V, m, i, x, y, dots, field, over, stars, out)
+        moves.x[i] = min(max(x + du, x0), x1)
+        moves.y[i] = min(max(y + dv, y0), y1)
+        moves.gone[i] = math.sqrt(du * du + dv * dv)
+        moves.free[i] -= moves.gone[i]
+
+
+@inline
+def _way_to_centroid(
+    U: Any, V: Any, m: int, i: int, x: float, y: float, dots: Dots, field: Field, over: float,
+    stars: Stars, out: F8,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+    area, du, dv = moments_of(U, V, m)
+    area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+    if len(field.sums):
+        outline_of_lanes(U, V, m, out)
+        area, du, dv = sum_field(out, m, x, y, field)
+    if not area > 0.0:
+        return 0.0, 0.0
+    du, dv = du / area, dv / area
+    if over != 1.0:
+        for k in range(m):
+            a, b = dots.x[stars.around[i, k]] - x, dots.y[stars.around[i, k]] - y
+            if over * (a * du + b * dv) > 0.5 * (a * a + b * b):
+                return du, dv
+        return over * du, over * dv
+    return du, dv
 
 
 @inner

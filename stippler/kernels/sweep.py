@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stippler.kernels.grid import F8, I4
-from stippler.kernels.jit import inline, inner
+from stippler.kernels.crowds import APART, cut_lanes_by_span
+from stippler.kernels.jit import ZERO, inline, inner
 from stippler.kernels.simd import get, reach2_of
-from stippler.kernels.voronoi import OVERFLOW, cut_lanes_by_run
-
-_APART = 1e-300
+from stippler.kernels.tables import Dots, Grid, Spot
+from stippler.kernels.voronoi import OVERFLOW
 
 SWEEP_FROM = 4
 """Ring from which rows take the place of rings."""
@@ -39,59 +38,39 @@ def _columns_that_cut(
 
 
 @inner
-def sweep_rows(
-    U: Any,
-    V: Any,
-    N: Any,
-    m: int,
-    xs: F8,
-    ys: F8,
-    x: float,
-    y: float,
-    cell_start: I4,
-    first_cell: int,
-    ix: int,
-    iy: int,
-    nx: int,
-    ny: int,
-    gx: float,
-    gy: float,
-    h: float,
-    slack: float,
-) -> int:
-    """Cut the cell of (x, y) by all dots from ring `SWEEP_FROM` on.
+def sweep_rows(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot) -> int:
+    """Cut a dot's cell by all dots from ring `SWEEP_FROM` on.
 
-    Returns the cell's corners, or `OVERFLOW`. Parameters are those of `relaxation.relax_dots`.
+    Returns the cell's corners, or `OVERFLOW`.
     """
-    for k in range(2 * ny + 1):
+    h, slack, nx = spot.h, grid.slack, spot.nx
+    for k in range(2 * spot.ny + 1):
         away = (k + 1) >> 1
-        row = iy + away if k & 1 else iy - away
+        row = spot.iy + away if k & 1 else spot.iy - away
         limit = 4.0 * reach2_of(U, V, m) * (1.0 + 1e-9)
         least = max((away - 1) * h - slack, 0.0)
         if least * least > limit:
             break
-        if row < 0 or row >= ny:
+        if row < 0 or row >= spot.ny:
             continue
-        top = gy + row * h - y
+        top = spot.gy + row * h - spot.y
         low, high = _columns_that_cut(U, V, m, top - slack, top + h + slack, slack)
         if low > high:
             continue
-        first = max(math.floor((x + low - gx) / h), 0)
-        last = min(math.floor((x + high - gx) / h), nx - 1)
-        if last < first:
-            continue
-        a = first_cell + row * nx
+        first = max(math.floor((spot.x + low - spot.gx) / h), 0)
+        last = min(math.floor((spot.x + high - spot.gx) / h), nx - 1)
         # what the rings have seen is not cut by again: a corner on a bisector may round across it
         is_seen = away < SWEEP_FROM
         for side in range(2 if is_seen else 1):
             p, q = first, last
             if is_seen and side == 0:
-                q = min(last, ix - SWEEP_FROM)
+                q = min(last, spot.ix - SWEEP_FROM)
             elif is_seen:
-                p = max(first, ix + SWEEP_FROM)
+                p = max(first, spot.ix + SWEEP_FROM)
             if p <= q and m != OVERFLOW:
-                start, end = cell_start[a + p], cell_start[a + q + 1]
-                m = cut_lanes_by_run(U, V, N, m, xs, ys, x, y, start, end, _APART, limit)
+                m = cut_lanes_by_span(
+                    U, V, N, m, dots, grid, spot, row, p, q, APART, limit, ZERO - 1
+                )
         if m == OVERFLOW:
             break
     return m

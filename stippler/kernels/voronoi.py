@@ -15,7 +15,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stippler.kernels.jit import ZERO, inline, inner
 from stippler.kernels.simd import (
@@ -29,9 +28,7 @@ from stippler.kernels.simd import (
     put,
     roll,
 )
-
-F8 = NDArray[np.float64]
-I4 = NDArray[np.int32]
+from stippler.kernels.tables import F8, Spot
 
 TOLERANCE = 1e-14
 """A corner that a bisector passes closer than this share of its distance is not cut."""
@@ -175,12 +172,7 @@ def unpack_lanes(
     m: int,
     xs: F8,
     ys: F8,
-    x: float,
-    y: float,
-    x0: float,
-    y0: float,
-    x1: float,
-    y1: float,
+    spot: Spot,
     cell: F8,
 ) -> None:
     """Copy a cell from lanes into a plain array, with the lines its sides lie on."""
@@ -189,15 +181,15 @@ def unpack_lanes(
         j = get(N, k)
         cell[5, k] = j
         if j == -1:
-            cell[2, k], cell[3, k], cell[4, k] = 0.0, -1.0, -y0
+            cell[2, k], cell[3, k], cell[4, k] = 0.0, -1.0, -spot.y0
         elif j == -2:
-            cell[2, k], cell[3, k], cell[4, k] = 1.0, 0.0, x1
+            cell[2, k], cell[3, k], cell[4, k] = 1.0, 0.0, spot.x1
         elif j == -3:
-            cell[2, k], cell[3, k], cell[4, k] = 0.0, 1.0, y1
+            cell[2, k], cell[3, k], cell[4, k] = 0.0, 1.0, spot.y1
         elif j == -4:
-            cell[2, k], cell[3, k], cell[4, k] = -1.0, 0.0, -x0
+            cell[2, k], cell[3, k], cell[4, k] = -1.0, 0.0, -spot.x0
         else:
-            a, b = xs[j] - x, ys[j] - y
+            a, b = xs[j] - spot.x, ys[j] - spot.y
             cell[2, k], cell[3, k], cell[4, k] = a, b, 0.5 * (a * a + b * b)
 
 

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.kernels.crowds import CROWD, LEAF, bound_crowds, split_crowds
 from stippler.kernels.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.pool import run_ranges
 from stippler.kernels.relaxation import TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.simd import LANES, SCAN
 from stippler.kernels.stars import check_stars, renumber_stars, verify_stars
+from stippler.kernels.tables import Dots, Grid, Moves, Stars
 from stippler.stippling.compartments import Compartments
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
@@ -36,9 +38,9 @@ SLACK = 0.5
 """How far, in grid cells, dots may go before they are sorted anew."""
 
 _NO_ROWS = np.empty(0, np.int32)
-_NO_STARS = np.empty((0, LANES), np.int32)
 _NO_CELLS = np.empty((0, 4))
 _NO_FLAGS = np.empty(0, np.uint8)
+_NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 
 
 class Cells:
@@ -66,7 +68,8 @@ class Cells:
         self.grid = DotGrid.over(parts, np.bincount(compartment_of_dot, minlength=len(parts)))
         self.spacing = float(np.sqrt(parts.area.sum() / max(n, 1)))
         self._cell_start = np.zeros(self.grid.n_cells + 1, np.int32)
-        self._mass, self._moment, self._frame = running_sums(density)
+        self._crowd, self._tree_of_cell, self._node = _NO_ROWS, _NO_ROWS, _NO_CELLS
+        self._field = running_sums(density)
         self._slack = np.inf
         self._keep = False
         self._star = np.zeros((n, LANES), np.int32)
@@ -91,55 +94,64 @@ class Cells:
 
     def step(self, cancel: Question = None) -> Floats | None:
         """Move every free dot once; return how far each row went, or None if cancelled."""
-        new = np.zeros(self.n + SCAN), np.zeros(self.n + SCAN), np.empty(self.n)
+        new = self._new_moves()
         done = self.keeps_stars and self._step_from_stars(new, cancel)
         if not done:
             self._has_stars, self.n_failed = False, self.n
-            done = self._sort(cancel=cancel) and self._relax(_NO_ROWS, True, new, cancel=cancel)
+            done = self._sort(cancel=cancel) and self._step_from_nothing(new, cancel)
             self._has_stars = done
         if not done:
             return None
-        self.xs, self.ys, gone = new
+        self.xs, self.ys = new.x, new.y
         if self.n:
-            self._slack += float(gone.max())
-            self._keep = float(gone.mean()) < KEEP_BELOW * self.spacing
-        return gone
+            self._slack += float(new.gone.max())
+            self._keep = float(new.gone.mean()) < KEEP_BELOW * self.spacing
+        return new.gone
 
     def measure(self, weighted: bool) -> Floats:
         """Return mass, centroid from the dot and second moment of cells, in the order given."""
         self._sort(self._has_stars)
         cells = np.zeros((self.n, 4))
-        new = np.zeros(self.n + SCAN), np.zeros(self.n + SCAN), np.empty(self.n)
         rows = np.arange(self.n, dtype=np.int32)
-        self._relax(rows, False, new, cells=cells, weighted=weighted, has_stars=False)
+        self._relax(rows, False, self._new_moves(), cells, weighted, _NO_STARS)
         out = np.empty_like(cells)
         out[self.order] = cells
         return out
+
+    def _new_moves(self) -> Moves:
+        n = self.n
+        new = np.zeros(n + SCAN), np.zeros(n + SCAN), np.empty(n)
+        return Moves(*new, self._kind_of_cell, self._free_of_dot)
+
+    @property
+    def _dots(self) -> Dots:
+        return Dots(self.xs, self.ys, self.fixed, self.compartment_of_dot)
+
+    @property
+    def _table(self) -> Grid:
+        real, whole = self.grid.real, self.grid.whole
+        return Grid(real, whole, self._cell_start, self._slack, self._tree_of_cell, self._node)
 
     def _relax(
         self,
         which: Rows,
         is_all: bool,
-        new: tuple[Floats, Floats, Floats],
+        new: Moves,
         cells: Floats = _NO_CELLS,
         weighted: bool = True,
-        has_stars: bool = True,
-        suspect: NDArray[np.uint8] = _NO_FLAGS,
+        stars: Stars = _NO_STARS,
         cancel: Question = None,
     ) -> bool:
         """Compute cells from nothing; once more, with more room, those of very many corners."""
-        grid, parts = self.grid, self.parts
-        mass, moment = (self._mass, self._moment) if weighted else (_NO_CELLS, _NO_CELLS)
-        fixed = self.fixed if not len(cells) else np.empty(0, np.bool_)
+        field = self._field if weighted else running_sums(None)
+        dots = self._dots
+        if len(cells):
+            dots = dots._replace(fixed=np.empty(0, np.bool_))
         cap, n = CORNER_CAP, self.n if is_all else len(which)
         while n:
             done = run_ranges(
-                relax_dots, n, which, is_all, self.xs, self.ys, fixed,
-                self.compartment_of_dot, self._cell_start, self._slack, grid.real, grid.whole,
-                parts.edges, parts.next_edge, grid.edge_start, grid.edge_of_slot, grid.clear,
-                mass, moment, self._frame, cap, grid.most_edges, self.over,
-                *new, cells, self._kind_of_cell, self._free_of_dot,
-                self._star if has_stars else _NO_STARS, self._n_star, suspect,
+                relax_dots, n, cap, which, is_all, dots, self._table, self.grid.border, field,
+                self.over, new, cells, stars,
                 grain=GRAIN if is_all else FEW, chunks=8, cancel=cancel,
             )  # fmt: skip
             if not done:
@@ -149,33 +161,37 @@ class Cells:
             is_all, n, cap = False, len(which), 16 * cap
         return True
 
-    def _step_from_stars(self, new: tuple[Floats, Floats, Floats], cancel: Question) -> bool:
+    def _step_from_nothing(self, new: Moves, cancel: Question) -> bool:
+        new = new._replace(kind=self._kind_of_cell, free=self._free_of_dot)
+        stars = Stars(self._star, self._n_star, _NO_FLAGS)
+        return self._relax(_NO_ROWS, True, new, stars=stars, cancel=cancel)
+
+    def _step_from_stars(self, new: Moves, cancel: Question) -> bool:
         """Move dots by verified stars; False if that is not worth it now, or cancelled."""
         has_run = self._slack > SLACK * float(self.grid.real[:, 2].min())
         if has_run and not self._sort(True, cancel):
             return False
+        new = new._replace(kind=self._kind_of_cell, free=self._free_of_dot)
         todo = np.empty(self.n, np.uint8)
-        grid = self.grid
+        stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
         done = run_ranges(
-            verify_stars, self.n, self.xs, self.ys, self.fixed, self.compartment_of_dot,
-            grid.real, self._mass, self._moment, self._frame, self.over,
-            self._star, self._n_star, self._kind_of_cell, self._free_of_dot, *new, todo,
-            grain=GRAIN, cancel=cancel,
+            verify_stars, self.n, self._dots, self._table, self._field, self.over, new, stars,
+            todo, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
         self.n_failed = len(which)
         if self.n_failed > MOST_TODO * self.n:
             return False
-        suspect = np.zeros(self.n, np.uint8)
+        self._bound_crowds()
         settled = np.zeros(self.n, np.bool_)
         while done and len(which):
             settled[which] = True
-            done = self._relax(which, False, new, suspect=suspect, cancel=cancel)
+            done = self._relax(which, False, new, stars=stars, cancel=cancel)
             if not done:
                 break
-            rows = np.flatnonzero((suspect != 0) & ~settled).astype(np.int32)
-            suspect[:] = 0
-            run_ranges(check_stars, len(rows), rows, self._star, self._n_star, todo, grain=1024)
+            rows = np.flatnonzero((stars.suspect != 0) & ~settled).astype(np.int32)
+            stars.suspect[:] = 0
+            run_ranges(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
             which = rows[todo[rows] != 0]
         return done
 
@@ -193,10 +209,14 @@ class Cells:
         if not done:
             return False
         sort_by_grid_cell(cell_of_dot, cell_start, order)
+        crowd, tree_of_cell, node = self._split_crowds(cell_start, order)
         if cancel is not None and cancel():
             return False
         names = ["fixed", "compartment_of_dot", "order"]
-        sorted_rows: dict[str, Any] = {"_cell_start": cell_start}
+        sorted_rows: dict[str, Any] = {
+            "_cell_start": cell_start, "_crowd": crowd, "_tree_of_cell": tree_of_cell,
+            "_node": node,
+        }  # fmt: skip
         if with_stars:
             names += ["_n_star", "_kind_of_cell", "_free_of_dot"]
             new_row = np.empty(n, np.int32)
@@ -213,5 +233,31 @@ class Cells:
             setattr(self, name, rows)
         self.xs[:n], self.ys[:n] = self.xs[order], self.ys[order]
         self._slack = 0.0
+        self._bound_crowds()
         self._has_stars = self._has_stars and with_stars
         return True
+
+    def _split_crowds(self, cell_start: Rows, order: Rows) -> tuple[Rows, Rows, Floats]:
+        """Order the dots of crowded grid cells by trees; return cells, their trees, room for them.
+
+        All are empty where no cell is crowded.
+        """
+        n_dots = np.diff(cell_start)
+        crowd = np.flatnonzero(n_dots > CROWD).astype(np.int32)
+        if not len(crowd):
+            return crowd, _NO_ROWS, _NO_CELLS
+        args = (split_crowds, len(crowd), crowd, cell_start, self.xs, self.ys, order)
+        run_ranges(*args, grain=1, chunks=16)
+        halvings = np.ceil(np.log2(n_dots[crowd] / LEAF)).astype(np.int64)
+        ends = np.cumsum(2 << halvings)
+        tree_of_cell = np.full(len(n_dots), -1, np.int32)
+        tree_of_cell[crowd] = np.concatenate([[0], ends[:-1]])
+        return crowd, tree_of_cell, np.empty((int(ends[-1]), 4))
+
+    def _bound_crowds(self) -> None:
+        """Fit the trees of crowded grid cells to where their dots are now."""
+        if len(self._crowd):
+            run_ranges(
+                bound_crowds, len(self._crowd), self._crowd, self._tree_of_cell, self._cell_start,
+                self.xs, self.ys, self._node, grain=1, chunks=16,
+            )  # fmt: skip

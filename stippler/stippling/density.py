@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from stippler.errors import ParameterError
 from stippler.kernels.field import sum_rows
 from stippler.kernels.pool import run_ranges
+from stippler.kernels.tables import Field
 
 Density = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
@@ -73,18 +74,16 @@ class DensityField:
         return cls(values, (float(x1 - x0) / w, float(y1 - y0) / h), (float(x0), float(y0)))
 
 
-def running_sums(
-    density: DensityField | None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return running sums of mass and moment along rows, and origin and sides; see `field`.
+def running_sums(density: DensityField | None) -> Field:
+    """Return running sums of mass and moment along rows, see `stippler.kernels.field`.
 
-    Without a density the sums are empty.
+    Without a density they are empty.
     """
     if density is None:
-        return np.empty((0, 4)), np.empty((0, 4)), np.array([0.0, 0.0, 1.0, 1.0])
+        return Field(np.empty((0, 0, 2)), np.array([0.0, 0.0, 1.0, 1.0]))
     h, w = density.values.shape
-    mass, moment = np.empty((h, w + 1)), np.empty((h, w + 1))
+    sums = np.empty((h, w + 1, 2))
     values = np.ascontiguousarray(density.values, np.float32)
-    run_ranges(sum_rows, h, values, mass, moment, grain=64)
+    run_ranges(sum_rows, h, values, sums, grain=64)
     sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
-    return mass, moment, np.array([*density.origin_mm, *sides])
+    return Field(sums, np.array([*density.origin_mm, *sides]))

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.grid import measure_clearance, spread_edges
+from stippler.kernels.tables import Border
 from stippler.stippling.compartments import RECTANGLE, Compartments
 
-DOTS_PER_CELL = 2.0
+DOTS_PER_CELL = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,39 +23,38 @@ class DotGrid:
     real, whole
         Frame and size of each compartment's grid.
     n_cells : int
-    edge_start, edge_of_slot : int32
-        Border edges by grid cell.
-    clear : (n_cells,) int32
-        Rings of grid cells without edges.
-    most_edges : int
-        Of one compartment.
+    border : Border
+        The border edges, by grid cell.
     """
 
     real: NDArray[np.float64]
     whole: NDArray[np.int32]
     n_cells: int
-    edge_start: NDArray[np.int32]
-    edge_of_slot: NDArray[np.int32]
-    clear: NDArray[np.int32]
-    most_edges: int
+    border: Border
 
     @classmethod
     def over(cls, parts: Compartments, n_dots: NDArray[np.intp]) -> DotGrid:
         """Lay grids of about `DOTS_PER_CELL` dots a cell; `n_dots` counts by compartment."""
         real, whole, n_cells = _frames(parts, n_dots)
-        args = (parts.edges, parts.compartment_of_edge, real, whole)
-        edge_start = np.zeros(n_cells + 1, np.int32)
-        edge_of_slot = np.empty(0, np.int32)
-        clear = np.full(n_cells, 1 << 20, np.int32)
-        most_edges = 0
-        if len(parts.edges):
-            spread_edges(*args, edge_start, edge_of_slot, True)
-            np.cumsum(edge_start, out=edge_start)
-            edge_of_slot = np.empty(int(edge_start[-1]), np.int32)
-            spread_edges(*args, edge_start.copy(), edge_of_slot, False)
-            measure_clearance(whole, edge_start, clear)
-            most_edges = int(np.bincount(parts.compartment_of_edge).max())
-        return cls(real, whole, n_cells, edge_start, edge_of_slot, clear, most_edges)
+        return cls(real, whole, n_cells, _border_of(parts, real, whole, n_cells))
+
+
+def _border_of(
+    parts: Compartments, real: NDArray[np.float64], whole: NDArray[np.int32], n_cells: int
+) -> Border:
+    args = (parts.edges, parts.compartment_of_edge, real, whole)
+    start = np.zeros(n_cells + 1, np.int32)
+    edge_of_slot = np.empty(0, np.int32)
+    clear = np.full(n_cells, 1 << 20, np.int32)
+    most_edges = 0
+    if len(parts.edges):
+        spread_edges(*args, start, edge_of_slot, True)
+        np.cumsum(start, out=start)
+        edge_of_slot = np.empty(int(start[-1]), np.int32)
+        spread_edges(*args, start.copy(), edge_of_slot, False)
+        measure_clearance(whole, start, clear)
+        most_edges = int(np.bincount(parts.compartment_of_edge).max())
+    return Border(parts.edges, parts.next_edge, start, edge_of_slot, clear, most_edges)
 
 
 def _frames(

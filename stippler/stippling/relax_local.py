@@ -12,13 +12,14 @@ from stippler.kernels.buckets import find_in_circle, place_dots
 from stippler.kernels.pool import run_ranges
 from stippler.kernels.relaxation import TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.simd import LANES, SCAN
+from stippler.kernels.tables import Dots, Grid, Moves, Stars
 from stippler.stippling.cells import CORNER_CAP
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
 
-_NO_STARS = np.empty((0, LANES), np.int32)
 _NO_FLAGS = np.empty(0, np.uint8)
+_NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 _NO_CELLS = np.empty((0, 4))
 
 
@@ -48,7 +49,7 @@ class LocalRelaxation:
         self._parts = Compartments.of(polygon)
         self._compartment = self._find(xy, compartment_of_dot)
         self._slot_of_dot = np.full(len(xy), -1, np.int32)
-        self._mass, self._moment, self._frame = running_sums(density)
+        self._field = running_sums(density)
         self._build(np.arange(len(xy), dtype=np.int32), xy)
 
     def __len__(self) -> int:
@@ -94,13 +95,15 @@ class LocalRelaxation:
             if len(slots) and slots.min() < 0:
                 raise ParameterError("has been removed", f"dot {chosen[int(slots.argmin())]}")
             self._compute(slots)
-            self._place(chosen, self._new_x[slots], self._new_y[slots], self._compartment[chosen])
+            self._place(
+                chosen, self._moves.x[slots], self._moves.y[slots], self._compartment[chosen]
+            )
         return self.positions(chosen)
 
     def cell_areas(self, dots: ArrayLike) -> NDArray[np.float64]:
         """Return the areas of the cells of dots, (k,), mm²."""
         slots = self._slot_of_dot[np.asarray(dots, np.int32)]
-        cells = np.zeros((len(self._new_x), 4))
+        cells = np.zeros((len(self._moves.x), 4))
         self._compute(slots, cells)
         return np.array(cells[slots, 0])
 
@@ -146,18 +149,13 @@ class LocalRelaxation:
 
     def _compute(self, slots: NDArray[np.int32], cells: NDArray[np.float64] = _NO_CELLS) -> None:
         """Compute cells and where they take their dots; measure them by area if there is room."""
-        grid, parts, cap = self._grid, self._parts, CORNER_CAP
-        mass, moment = (_NO_CELLS, _NO_CELLS) if len(cells) else (self._mass, self._moment)
+        field, cap = running_sums(None) if len(cells) else self._field, CORNER_CAP
         while len(slots):
             run_ranges(
-                relax_dots, len(slots), slots, False, self._xs, self._ys, self._fixed,
-                self._compartment_of_slot, self._cell_start, 0.0, grid.real, grid.whole,
-                parts.edges, parts.next_edge, grid.edge_start, grid.edge_of_slot, grid.clear,
-                mass, moment, self._frame, cap, grid.most_edges, 1.0,
-                self._new_x, self._new_y, self._gone, cells, self._kind, self._free,
-                _NO_STARS, _NO_FLAGS, _NO_FLAGS, grain=128, chunks=2,
+                relax_dots, len(slots), cap, slots, False, self._dots, self._table,
+                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, grain=128, chunks=2,
             )  # fmt: skip
-            slots = slots[self._kind[slots] == TOO_MANY_CORNERS]
+            slots = slots[self._moves.kind[slots] == TOO_MANY_CORNERS]
             cap *= 16
 
     def _place(
@@ -199,12 +197,16 @@ class LocalRelaxation:
     def _lay_out(self, n_slots: int) -> None:
         n_cells = self._grid.n_cells
         self._count = np.zeros(n_cells, np.int32)
-        self._cell_start = (np.arange(n_cells + 1) * self._room).astype(np.int32)
         self._xs = np.full(n_slots + SCAN, np.nan)
         self._ys = np.full(n_slots + SCAN, np.nan)
         self._compartment_of_slot = np.zeros(n_slots, np.int32)
         self._dot_of_slot = np.full(n_slots, -1, np.int32)
-        self._fixed = np.zeros(0, np.bool_)
-        self._new_x, self._new_y = np.empty(n_slots), np.empty(n_slots)
-        self._gone, self._free = np.empty(n_slots), np.empty(n_slots)
-        self._kind = np.zeros(n_slots, np.uint8)
+        self._dots = Dots(self._xs, self._ys, np.zeros(0, np.bool_), self._compartment_of_slot)
+        cell_start = (np.arange(n_cells + 1) * self._room).astype(np.int32)
+        self._table = Grid(
+            self._grid.real, self._grid.whole, cell_start, 0.0, np.empty(0, np.int32), _NO_CELLS
+        )
+        self._moves = Moves(
+            np.empty(n_slots), np.empty(n_slots), np.empty(n_slots), np.zeros(n_slots, np.uint8),
+            np.empty(n_slots),
+        )  # fmt: skip

@@ -32,6 +32,7 @@ def test_every_edge_is_listed_wherever_it_touches(seed, n_dots):
         shape = Polygon([(0, 0), (3, 1), (0.5, 2)])
     parts = Compartments.of(shape)
     grid = DotGrid.over(parts, np.array([n_dots]))
+    border = grid.border
     x0, y0, h = grid.real[0, :3]
     nx, ny = grid.whole[0, :2]
     touched = np.zeros((ny, nx), bool)
@@ -40,13 +41,13 @@ def test_every_edge_is_listed_wherever_it_touches(seed, n_dots):
         for k in range(nx * ny):
             j, i = divmod(k, nx)
             cell = box(x0 + i * h, y0 + j * h, x0 + (i + 1) * h, y0 + (j + 1) * h)
-            listed = e in grid.edge_of_slot[grid.edge_start[k] : grid.edge_start[k + 1]]
+            listed = e in border.edge_of_slot[border.cell_start[k] : border.cell_start[k + 1]]
             touched[j, i] |= listed
             if line.intersects(cell):
                 assert listed
     for j, i in np.ndindex(ny, nx):
         rings = np.array([max(abs(j - b), abs(i - a)) for b, a in np.argwhere(touched)])
-        assert grid.clear[j * nx + i] == rings.min()
+        assert border.clear[j * nx + i] == rings.min()
 
 
 def test_a_rectangle_has_no_edges():

@@ -153,6 +153,21 @@ def test_needles_and_a_hole_beside_the_border(n):
     assert_cells(points_in(polygon, n, n), polygon)
 
 
+@SETTINGS
+@given(
+    seed=st.integers(0, 10**6), n=st.integers(30, 400), n_clusters=st.integers(1, 5),
+    spread=st.sampled_from([0.1, 0.01, 1e-4]), corners=st.integers(3, 30),
+)  # fmt: skip
+def test_cells_of_tight_clusters(seed, n, n_clusters, spread, corners):
+    """Grid cells that are crowded, and cells of dots at a crowd's edge, which reach far."""
+    polygon = star_polygon(seed, corners)
+    rng = np.random.default_rng(seed)
+    centre = points_in(polygon, n_clusters, seed)[rng.integers(0, n_clusters, n)]
+    points = centre + spread * rng.uniform(-1, 1, (n, 2))
+    points = np.vstack([points[shapely.contains_xy(polygon, *points.T)], centre[:1]])
+    assert_cells(points, polygon)
+
+
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e6])
 @pytest.mark.parametrize("shift", [0.0, 10.0])
 def test_any_scale(scale, shift):
@@ -272,9 +287,13 @@ def test_no_weight_no_move():
     np.testing.assert_array_equal(engine.points[white], points[white])
 
 
-def test_same_bits_for_any_number_of_threads():
+@pytest.mark.parametrize("spread", [1.0, 0.01], ids=["even", "crowded"])
+def test_same_bits_for_any_number_of_threads(spread):
     polygon = star_polygon(11, 40)
     points = points_in(polygon, 20_000, 1)
+    middle = polygon.representative_point().coords[0]
+    points[::2] = middle + spread * (points[::2] - middle)
+    points = points[shapely.contains_xy(polygon, *points.T)]
     results = []
     try:
         for threads in (1, 2, 5):

@@ -76,6 +76,30 @@ def test_stars_survive_dots_that_run(monkeypatch):
         assert np.abs(engine.points - want).max() <= 1e-9 * engine._cells.spacing
 
 
+def clusters(n, spread, seed=0):
+    """Dots in five tight clusters, and a few far from all of them."""
+    rng = np.random.default_rng(seed)
+    centres = rng.uniform(1, 9, (5, 2))
+    tight = centres[rng.integers(0, 5, n)] + spread * rng.standard_normal((n, 2))
+    xy = np.vstack([tight, rng.uniform(0, 10, (20, 2))])
+    return xy[shapely.contains_xy(HOLED, xy[:, 0], xy[:, 1])]
+
+
+def test_stars_survive_clusters_that_spread(monkeypatch):
+    """Crowded grid cells whose dots have gone on since they were sorted into them."""
+    points = clusters(1500, 0.1)
+    monkeypatch.setattr(cells, "MOST_TODO", 2.0)
+    monkeypatch.setattr(cells, "KEEP_BELOW", 10.0)
+    monkeypatch.setattr(cells, "SLACK", 3.0)
+    engine = Relaxation(points, HOLED)
+    n_old = 0
+    for want in from_nothing(monkeypatch, points, HOLED, steps=12):
+        engine.step()
+        n_old += len(engine._cells._crowd) > 0 and engine._cells._slack > engine._cells.spacing
+        assert np.abs(engine.points - want).max() <= 1e-9 * engine._cells.spacing
+    assert n_old >= 2, "no crowd was old"
+
+
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 300))
 @settings(max_examples=25)
 def test_energy_never_rises(seed, n):
@@ -302,13 +326,18 @@ def test_public_relax():
     assert shapely.intersects_xy(parts, *relax(inside, parts).T).all()
 
 
+with np.errstate(invalid="ignore"):
+    NOT_FINITE = Polygon([(0, 0), (1, 0), (np.nan, 1)])
+
 BAD = [
-    (Polygon(), "empty"),
-    (Polygon([(0, 0), (1, 1), (1, 0), (0, 1)]), "not valid"),
-    (np.array([(0, 0), (1, 0), (np.nan, 1)]), "not finite"),
-    (np.array([(0, 0), (1, 0)]), "three points"),
-    (Polygon([(0, 0), (1, 0), (2, 0)]), "not valid|no area"),
+    (Polygon(), "compartment 0: is empty"),
+    (Polygon([(0, 0), (1, 1), (1, 0), (0, 1)]), "compartment 0: is not valid .Self-intersection"),
+    (np.array([(0, 0), (1, 0), (np.nan, 1)]), "compartment 0: .*not finite"),
+    (NOT_FINITE, "compartment 0: .*not finite"),
+    (np.array([(0, 0), (1, 0)]), "compartment 0: .*three points"),
+    (Polygon([(0, 0), (1, 0), (2, 0)]), "compartment 0: (is not valid|has no area)"),
     ([box(0, 0, 1, 1), Polygon()], "compartment 1: is empty"),
+    ([box(0, 0, 1, 1), Polygon([(2, 0), (3, 1), (3, 0), (2, 1)])], "compartment 1: is not valid"),
     ([box(0, 0, 1, 1), box(5, 5, 6, 6)], "compartment 1: holds no dots"),
     ([], "no compartment"),
     ("square", "no polygon"),
@@ -357,6 +386,16 @@ def test_a_few_dots_among_many():
         np.testing.assert_allclose(brush.relax(dots, 6), engine.points[dots], rtol=0, atol=1e-12)
         here = brush.positions(np.arange(3000))
         np.testing.assert_array_equal(here[fixed], engine.points[fixed])
+
+
+def test_a_brush_refuses_places_outside_and_moves_nothing():
+    points = points_in(HOLED, 200, 0)
+    brush = relax_local.LocalRelaxation(points, HOLED)
+    for change in (lambda xy: brush.move([3, 4], xy), brush.add):
+        with pytest.raises(GeometryError, match=r"dot 1 at \(5\.5, 9\) lies outside"):
+            change([[5.5, 1.0], [5.5, 9.0]])
+        np.testing.assert_array_equal(brush.positions(np.arange(200)), points)
+        assert len(brush) == 200
 
 
 @given(seed=st.integers(0, 10**6))

@@ -1,0 +1,121 @@
+"""What the kernels of relaxation are handed: flat arrays, grouped by what they describe."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+F8 = NDArray[np.float64]
+I4 = NDArray[np.int32]
+U1 = NDArray[np.uint8]
+
+
+class Dots(NamedTuple):
+    """Dots by row, those of a grid cell together; `x` and `y` have `simd.SCAN` numbers more.
+
+    `fixed` may be empty: no dot is.
+    """
+
+    x: F8
+    y: F8
+    fixed: NDArray[np.bool_]
+    compartment: I4
+
+
+class Grid(NamedTuple):
+    """The grid of each compartment, see `grid`, and its crowded cells, see `crowds`.
+
+    Dots may have gone as far as `slack` from the grid cell they are listed in.
+    """
+
+    real: F8
+    whole: I4
+    cell_start: I4
+    slack: float
+    tree_of_cell: I4
+    node: F8
+
+
+class Border(NamedTuple):
+    """Border edges, the edge after each, and which of them touch a grid cell, see `grid`."""
+
+    edge: F8
+    next_edge: I4
+    cell_start: I4
+    edge_of_slot: I4
+    clear: I4
+    most_edges: int
+
+
+class Field(NamedTuple):
+    """Running sums of the density, see `field`; empty for a uniform one.
+
+    `frame` holds its origin and the sides of a pixel.
+    """
+
+    sums: F8
+    frame: F8
+
+
+class Moves(NamedTuple):
+    """Results by row: the new place, and how far that is.
+
+    `kind` is what the cell is, see `relaxation`; within `free` of the new place lies no border.
+    """
+
+    x: F8
+    y: F8
+    gone: F8
+    kind: U1
+    free: F8
+
+
+class Stars(NamedTuple):
+    """Results by row, unless empty: the dots around each dot, counter-clockwise, and their number.
+
+    `suspect`, unless empty, is set to 1 for the old and new neighbours of dots whose star changes.
+    """
+
+    around: I4
+    n: U1
+    suspect: U1
+
+
+class Spot(NamedTuple):
+    """A dot's place, its grid cell, and the grid and the compartment's box around it.
+
+    `x0`, `y0`, `x1`, `y1` is the box, seen from the dot.
+    """
+
+    x: float
+    y: float
+    ix: int
+    iy: int
+    nx: int
+    ny: int
+    first_cell: int
+    gx: float
+    gy: float
+    h: float
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+
+class Pads(NamedTuple):
+    """Scratch of one range: a big cell and a second one, and the border near a cell.
+
+    `seen` holds by edge the stamp of the last dot it was gathered for, `stamp` the next one.
+    """
+
+    cell: F8
+    cell2: F8
+    near: I4
+    seen: NDArray[np.int64]
+    stamp: NDArray[np.int64]
+    chains: F8
+    trace: F8
+    out: F8
