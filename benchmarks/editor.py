@@ -133,7 +133,7 @@ def _cpu_s(pid: int) -> float:
 # --- frames --------------------------------------------------------------------------------------
 
 
-class _Apart:
+class Apart:
     """Adds up the time inside GL calls that draw, clear, or show."""
 
     def __init__(self) -> None:
@@ -160,15 +160,14 @@ class _Apart:
         setattr(owner, name, timed)
 
 
-def _frames(repeats: int) -> list[Figure]:
+@contextlib.contextmanager
+def gl_apart() -> Iterator[Apart]:
+    """Time the GL calls of frames for as long as this is entered."""
     from imgui_bundle import imgui  # isort: skip
     import glfw
     import moderngl
 
-    from stippler.app import App
-    from stippler.stippling.plan import Plan
-
-    gl = _Apart()
+    gl = Apart()
     for owner, name in (
         (moderngl.VertexArray, "render"),
         (moderngl.Framebuffer, "clear"),
@@ -177,12 +176,22 @@ def _frames(repeats: int) -> list[Figure]:
         (glfw, "swap_buffers"),
     ):
         gl.wrap(owner, name)
-    app = App(Plan(), tone="linear", width_mm=148.0, size=_SIZE, offscreen=True)
     try:
-        still, moving = _own_and_all(app, gl, repeats)
+        yield gl
     finally:
-        app.close()
         gl.unwrap()
+
+
+def _frames(repeats: int) -> list[Figure]:
+    from stippler.app import App
+    from stippler.stippling.plan import Plan
+
+    with gl_apart() as gl:
+        app = App(Plan(), tone="linear", width_mm=148.0, size=_SIZE, offscreen=True)
+        try:
+            still, moving = _own_and_all(app, gl, repeats)
+        finally:
+            app.close()
     where = f"{_N_DOTS:,} dots, {_SIZE[0]} x {_SIZE[1]}"
     return [
         Figure(
@@ -199,7 +208,7 @@ def _frames(repeats: int) -> list[Figure]:
 
 
 def _own_and_all(
-    app: Any, gl: _Apart, repeats: int
+    app: Any, gl: Apart, repeats: int
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the medians, own and whole, of still frames and of moving ones; ms."""
     from stippler.drawing.reference import Reference

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from stippler.jobs.worker import Worker
 from stippler.ui.editor import Editor
+from stippler.ui.garbage import Garbage
 from stippler.ui.session import Session
 from stippler.ui.window import Window
 from stippler.ui.work import Work, make_ready, stipple_picture
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from stippler.stippling.plan import Plan
 
 _SIZE = (1280, 800)
+_AT_REST_S = 1.0  # the next frame is so far off that nobody sees a pause
 _FAREWELL_S = 2.0  # for a worker that decodes a large picture; it is let go of after that
 
 
@@ -43,6 +45,7 @@ class App:
         size: tuple[int, int] = _SIZE,
         offscreen: bool = False,
     ) -> None:
+        self._garbage = Garbage()
         self.window = Window("Stippler", size, offscreen=offscreen)
         self.worker: Worker[Work] = Worker(self.window.wake)
         self.exporter: Worker[Path] = Worker(self.window.wake)
@@ -61,6 +64,8 @@ class App:
     def step(self, timeout_s: float | None = None) -> bool:
         """Wait for something to do, at most `timeout_s`; draw a frame if there is one to draw."""
         sleep_s = self.editor.sleep_s()
+        if sleep_s >= _AT_REST_S and not self.session.busy:
+            self._garbage.rest()
         self.window.wait(sleep_s if timeout_s is None else min(sleep_s, timeout_s))
         return self.editor.step()
 
@@ -75,6 +80,7 @@ class App:
         self.exporter.close()
         self.editor.close()
         self.window.close()
+        self._garbage.close()
 
 
 def edit(path: Path | None, plan: Plan, *, tone: str, width_mm: float) -> int:
