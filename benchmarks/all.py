@@ -26,6 +26,7 @@ TOPICS = (
     "editor",
     "brushes",
     "live",
+    "soak",
 )
 
 
