@@ -49,6 +49,15 @@ def _editing(n: int) -> Editing:
     return Editing(drawing)
 
 
+def _drawn_tip() -> Tip:
+    """Return a tip with a soft, wavy outline of forty corners."""
+    angle = np.linspace(0, math.tau, 40, endpoint=False)
+    reach = 0.9 - 0.1 * np.cos(5 * angle)
+    return Tip(
+        "polygon", corners=tuple(zip(reach * np.cos(angle), reach * np.sin(angle), strict=True))
+    )
+
+
 def _stamps(n: int) -> list[Figure]:
     """Time single stamps in the middle of a stroke, each at another place."""
     editing = _editing(n)
@@ -68,6 +77,11 @@ def _stamps(n: int) -> list[Figure]:
                     note=f"95 % within {np.percentile(times, 95) * 1e3:.2f} ms",
                 )
             )  # fmt: skip
+    drawn = Brush("size", "size", 1.2 * radius, _drawn_tip())
+    median = statistics.median(_times(editing, drawn))
+    found.append(
+        Figure("the same: size enlarge, soft tip of 40 corners", median * 1e3, "ms", 1.0, 0.5)
+    )
     return found
 
 

@@ -11,6 +11,7 @@ from stippler.brushes.brush import Brush
 from stippler.brushes.kinds import KINDS
 from stippler.brushes.stroke import PointerSample
 from stippler.brushes.stroking import Stroke
+from stippler.brushes.tip import Tip
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.editing import Editing
@@ -32,6 +33,9 @@ def rehearse() -> None:
             brush = Brush(kind.name, kind.name, 3.0)
             stroke = Stroke(editing, brush, PointerSample(5.0, 5.0), 1)
             stroke.commit(PointerSample(6.0, 5.0, t=0.1))
+    Tip("polygon", corners=((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))).weight(
+        editing.dots.position_mm, 9.0
+    )
     editing.merge(_as_result(editing.begin_run("relax")))
     editing.end_run()
     while editing.undo():

@@ -47,7 +47,7 @@ class Painting:
         if self._editing is None or not self._session.paintable:
             if not self._is_wanted(event):
                 return False
-            if not self._session.adopt():
+            if not self._session.take_over():
                 return self._refuse()
             self._follow_session()
         return self._hand_on(event, page, px_per_mm)

@@ -141,7 +141,7 @@ class Session:
         )
         self.total = iterations
 
-    def adopt(self) -> bool:
+    def take_over(self) -> bool:
         """Make the dots that a job is relaxing the drawing's, so that they can be edited meanwhile.
 
         The job goes on with just these dots, as one step of the history, and leaves alone what a
