@@ -214,13 +214,13 @@ def _own_and_all(
     from stippler.drawing.reference import Reference
     from stippler.jobs.worker import Update
     from stippler.stippling.stipple import Progress
-    from stippler.ui.work import Work
+    from stippler.ui.work import Source, Work
 
     rng = np.random.default_rng(1)
     place = rng.random((_N_DOTS, 2)) * (148.0, 111.0)
     radius = np.full(_N_DOTS, 0.16, np.float32)
     reference = Reference(np.full((111, 148), 0.5, np.float32), 148.0)
-    app.session._request = 1
+    app.session._request, app.session._asked = 1, Source(Path("even"), "linear", 148.0)
 
     def tell() -> None:
         moved = place + rng.normal(0, 0.01, place.shape)

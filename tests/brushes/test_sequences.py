@@ -148,7 +148,8 @@ class PaintingMachine(RuleBasedStateMachine):
     @rule(corners=st.tuples(AT, AT), what=st.integers(0, 5))
     def work_on_a_selection(self, corners, what):
         editing, before, fixed = self.editing, self.editing.dots.copy(), self.places_of_fixed()
-        ids = selection.in_rectangle(editing, *corners)
+        (ax, ay), (bx, by) = corners
+        ids = selection.in_outline(editing, [(ax, ay), (bx, ay), (bx, by), (ax, by)])
         editing.begin("selection")
         if what == 0:
             selection.move(editing, ids, (1.5, -0.5))
