@@ -55,6 +55,12 @@ Start = Annotated[str, typer.Option(metavar="top|border", help="Where pulse-dens
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
+PenOption = Annotated[
+    str,
+    typer.Option(
+        "--pen", metavar="NAME", help="technical-pen, quill, brush, rough-paper or stick."
+    ),
+]
 
 
 def _version(shown: bool) -> None:
@@ -87,6 +93,7 @@ def edit(
     growth: Growth = "circular",
     start: Start = "top",
     unweighted: Unweighted = False,
+    pen: PenOption = "technical-pen",
 ) -> None:
     """Open the editor."""
     plan = _plan(
@@ -98,6 +105,7 @@ def edit(
         growth=growth,
         start=start,
         weighted=not unweighted,
+        pen=pen,
     )
     _check_page(tone, width)
     if file is not None:
@@ -126,6 +134,7 @@ def render(
     growth: Growth = "circular",
     start: Start = "top",
     unweighted: Unweighted = False,
+    pen: PenOption = "technical-pen",
 ) -> None:
     """Turn a picture into a drawing, without a window."""
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
@@ -141,6 +150,7 @@ def render(
         growth=growth,
         start=start,
         weighted=not unweighted,
+        pen=pen,
     )
     _check_page(tone, width)
     from stippler.progress import stages_shown

@@ -15,6 +15,7 @@ from stippler.brushes.tip import Tip
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.editing import Editing
+from stippler.drawing.reference import Reference
 from stippler.kernels import gpu_dots
 from stippler.kernels.overlap import shares_of_union
 
@@ -27,10 +28,13 @@ def rehearse() -> None:
     drawing = Drawing.blank(Page(_SIDE_MM, _SIDE_MM))
     place = np.stack(np.meshgrid(np.arange(1.0, 10.0), np.arange(1.0, 10.0)), axis=-1)
     drawing.dots = Dots.round(place.reshape(-1, 2), 0.2)
+    ramp = np.linspace(0.0, 1.0, 64, dtype=np.float32).reshape(8, 8)
+    drawing.reference = Reference(ramp, _SIDE_MM)
     editing = Editing(drawing)
-    for kind in KINDS:
-        if kind.rhythm != "select":
-            brush = Brush(kind.name, kind.name, 3.0)
+    brushes = [Brush(kind.name, kind.name, 3.0) for kind in KINDS]
+    brushes.append(Brush("along edges", "shape", 3.0, values={"along": "edge"}))
+    for brush in brushes:
+        if brush.about.rhythm != "select":
             stroke = Stroke(editing, brush, PointerSample(5.0, 5.0), 1)
             stroke.commit(PointerSample(6.0, 5.0, t=0.1))
     Tip("polygon", corners=((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))).weight(

@@ -17,6 +17,7 @@ STARTS = ("top", "border")
 """Where the first region lies: seeds in raster order, or from the border inwards."""
 
 DEFAULT_DOTS = 20_000
+DEFAULT_PEN = "technical-pen"
 MAX_DOTS = 20_000_000
 
 
@@ -41,6 +42,8 @@ class Plan:
         Where pulse-density begins.
     weighted : bool
         Relax by the wanted density; False is the paper's unweighted form.
+    pen : str
+        Whose shapes the dots have; see `stippler.drawing.pens`.
     """
 
     n_dots: int | None = None
@@ -51,6 +54,7 @@ class Plan:
     growth: str = "circular"
     start: str = "top"
     weighted: bool = True
+    pen: str = DEFAULT_PEN
 
     def __post_init__(self) -> None:
         if self.n_dots is not None and not 1 <= self.n_dots <= MAX_DOTS:
@@ -78,3 +82,7 @@ class Plan:
         ):
             if value not in known:
                 raise ParameterError(f"{value!r} is unknown", name, f"one of {', '.join(known)}")
+        if self.pen != DEFAULT_PEN:
+            from stippler.drawing.pens import pen_named
+
+            pen_named(self.pen)

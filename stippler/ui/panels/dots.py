@@ -7,6 +7,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
+from stippler.drawing.pens import PENS
 from stippler.stippling.plan import FIRST_DOTS, GROWTHS, STARTS
 from stippler.ui import work
 from stippler.ui.commands import Commands
@@ -60,6 +61,14 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
         ),
     )
     changes["weighted"] = by_tone == 0
+    pens = [pen.name for pen in PENS]
+    chosen = widgets.choice(
+        "Pen",
+        [pen.label for pen in PENS],
+        pens.index(plan.pen),
+        "The shapes of the dots; the Shape panel shows the pens, and changes dots that are there.",
+    )
+    changes["pen"] = pens[chosen]
     _draw_seed(widgets, session, changes)
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
     if changed:
