@@ -26,6 +26,8 @@ TOPICS = (
     "editor",
     "brushes",
     "view",
+    "live",
+    "soak",
 )
 
 

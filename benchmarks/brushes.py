@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from dataclasses import replace
 
 import numpy as np
 
@@ -19,8 +18,6 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.editing import Editing
 from stippler.drawing.reference import Reference
-from stippler.jobs.worker import Worker
-from stippler.ui.work import Work, relax_drawing
 
 _SIDE_MM = 200.0
 _HARD = Tip(hardness=1.0)
@@ -36,7 +33,7 @@ _VARIANTS: dict[str, list[dict[str, float | str | bool]]] = {
 def figures(quick: bool = False) -> list[Figure]:
     """Measure; `quick` uses fewer dots."""
     n = 50_000 if quick else 200_000
-    return [*_stamps(n), *_history(n), *_pauses(n, 3.0 if quick else 15.0), *_memory(n)]
+    return [*_stamps(n), *_history(n), *_memory(n)]
 
 
 def _editing(n: int) -> Editing:
@@ -50,6 +47,15 @@ def _editing(n: int) -> Editing:
     points = (corner + rng.uniform(0.1, 0.9, corner.shape)) * (_SIDE_MM / side)
     drawing.dots = Dots.round(points, 0.1)
     return Editing(drawing)
+
+
+def _drawn_tip() -> Tip:
+    """Return a tip with a soft, wavy outline of forty corners."""
+    angle = np.linspace(0, math.tau, 40, endpoint=False)
+    reach = 0.9 - 0.1 * np.cos(5 * angle)
+    return Tip(
+        "polygon", corners=tuple(zip(reach * np.cos(angle), reach * np.sin(angle), strict=True))
+    )
 
 
 def _stamps(n: int) -> list[Figure]:
@@ -71,6 +77,11 @@ def _stamps(n: int) -> list[Figure]:
                     note=f"95 % within {np.percentile(times, 95) * 1e3:.2f} ms",
                 )
             )  # fmt: skip
+    drawn = Brush("size", "size", 1.2 * radius, _drawn_tip())
+    median = statistics.median(_times(editing, drawn))
+    found.append(
+        Figure("the same: size enlarge, soft tip of 40 corners", median * 1e3, "ms", 1.0, 0.5)
+    )
     return found
 
 
@@ -124,52 +135,6 @@ def _history(n: int) -> list[Figure]:
     merge = median_s(lambda: whole.merge(moved), repeats=9)
     out.append(Figure(f"merging a result for {len(frozen) // 1000}k dots", merge * 1e3, "ms"))
     return out
-
-
-def _pauses(n: int, seconds: float) -> list[Figure]:
-    """Paint at 60 frames a second while a worker relaxes all dots; GL is not part of it."""
-    editing = _editing(n)
-    drawing = editing.drawing
-    frozen = replace(drawing, dots=editing.begin_run("Relax all"))
-    worker: Worker[Work] = Worker(lambda: None)
-    worker.start(lambda: relax_drawing(frozen, 1_000_000, weighted=False))
-    brush = Brush("push", "push", 3.0, values={"strength": 50.0})
-    stroke: Stroke | None = None
-    took: list[float] = []
-    late: list[float] = []
-    merged = 0
-    begin = time.perf_counter()
-    due = begin
-    while (now := time.perf_counter()) - begin < seconds:
-        if now < due:
-            time.sleep(due - now)
-            continue
-        late.append(now - due)
-        due = max(due + 1 / 60, now)
-        update = worker.poll()
-        if update is not None and update.result is not None and update.result.moved_mm is not None:
-            merged += editing.merge(update.result.moved_mm) > 0
-        t = now - begin
-        sample = PointerSample(100 + 80 * math.sin(t), 100 + 80 * math.cos(1.7 * t), t=t)
-        if stroke is None:
-            stroke = Stroke(editing, brush, sample, 1)
-        elif len(took) % 120 == 119:
-            stroke.commit(sample)
-            stroke = None
-        else:
-            stroke.follow(sample)
-        editing.take_changed()
-        took.append(time.perf_counter() - now)
-    worker.close()
-    name = f"painting while {len(editing.dots) // 1000}k dots relax, GL excluded"
-    both = [a + b for a, b in zip(took, late, strict=True)]
-    return [
-        Figure(
-            f"{name}: longest pause", max(both) * 1e3, "ms", 25.0, 17.0,
-            note=f"{len(took)} frames, {merged} results merged",
-        ),
-        Figure(f"{name}: our share of a frame, median", statistics.median(took) * 1e3, "ms"),
-    ]  # fmt: skip
 
 
 def _memory(n: int) -> list[Figure]:

@@ -136,7 +136,7 @@ def _cpu_s(pid: int) -> float:
 # --- frames --------------------------------------------------------------------------------------
 
 
-class _Apart:
+class Apart:
     """Adds up the time inside GL calls that draw, clear, or show."""
 
     def __init__(self) -> None:
@@ -163,15 +163,14 @@ class _Apart:
         setattr(owner, name, timed)
 
 
-def _frames(repeats: int) -> list[Figure]:
+@contextlib.contextmanager
+def gl_apart() -> Iterator[Apart]:
+    """Time the GL calls of frames for as long as this is entered."""
     from imgui_bundle import imgui  # isort: skip
     import glfw
     import moderngl
 
-    from stippler.app import App
-    from stippler.stippling.plan import Plan
-
-    gl = _Apart()
+    gl = Apart()
     for owner, name in (
         (moderngl.VertexArray, "render"),
         (moderngl.Framebuffer, "clear"),
@@ -180,12 +179,22 @@ def _frames(repeats: int) -> list[Figure]:
         (glfw, "swap_buffers"),
     ):
         gl.wrap(owner, name)
-    app = App(Plan(), tone="linear", width_mm=148.0, size=_SIZE, offscreen=True)
     try:
-        still, moving = _own_and_all(app, gl, repeats)
+        yield gl
     finally:
-        app.close()
         gl.unwrap()
+
+
+def _frames(repeats: int) -> list[Figure]:
+    from stippler.app import App
+    from stippler.stippling.plan import Plan
+
+    with gl_apart() as gl:
+        app = App(Plan(), tone="linear", width_mm=148.0, size=_SIZE, offscreen=True)
+        try:
+            still, moving = _own_and_all(app, gl, repeats)
+        finally:
+            app.close()
     where = f"{_N_DOTS:,} dots, {_SIZE[0]} x {_SIZE[1]}"
     return [
         Figure(
@@ -202,7 +211,7 @@ def _frames(repeats: int) -> list[Figure]:
 
 
 def _own_and_all(
-    app: Any, gl: _Apart, repeats: int
+    app: Any, gl: Apart, repeats: int
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the medians, own and whole, of still frames and of moving ones; ms."""
     from stippler.drawing.reference import Reference
@@ -214,7 +223,7 @@ def _own_and_all(
     place = rng.random((_N_DOTS, 2)) * (148.0, 111.0)
     radius = np.full(_N_DOTS, 0.16, np.float32)
     reference = Reference(np.full((111, 148), 0.5, np.float32), 148.0)
-    app.session._request, app.session._asked = 1, Source(Path("field.png"), "linear", 148.0)
+    app.session._request, app.session._asked = 1, Source(Path("even"), "linear", 148.0)
 
     def tell() -> None:
         moved = place + rng.normal(0, 0.01, place.shape)

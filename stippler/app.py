@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from stippler.jobs.worker import Worker
 from stippler.settings import settings_folder
 from stippler.ui.editor import Editor
+from stippler.ui.garbage import Garbage
 from stippler.ui.place import Place
 from stippler.ui.preferences import Preferences
 from stippler.ui.session import Session
@@ -20,6 +21,7 @@ from stippler.warm import is_warm
 if TYPE_CHECKING:
     from stippler.stippling.plan import Plan
 
+_AT_REST_S = 1.0  # the next frame is so far off that nobody sees a pause
 _FAREWELL_S = 2.0  # for a worker that decodes a large picture; it is let go of after that
 
 
@@ -51,6 +53,7 @@ class App:
         size: tuple[int, int] | None = None,
         offscreen: bool = False,
     ) -> None:
+        self._garbage = Garbage()
         kept = preferences or Preferences()
         place = Place(size) if size is not None else kept.place
         self.window = Window("Stippler", place, offscreen=offscreen)
@@ -71,6 +74,8 @@ class App:
     def step(self, timeout_s: float | None = None) -> bool:
         """Wait for something to do, at most `timeout_s`; draw a frame if there is one to draw."""
         sleep_s = self.editor.sleep_s()
+        if sleep_s >= _AT_REST_S and not self.session.busy:
+            self._garbage.rest()
         self.window.wait(sleep_s if timeout_s is None else min(sleep_s, timeout_s))
         return self.editor.step()
 
@@ -85,6 +90,7 @@ class App:
         self.exporter.close()
         self.editor.close()
         self.window.close()
+        self._garbage.close()
 
 
 def edit(

@@ -145,28 +145,13 @@ class Tip:
         return np.asarray(1.0 - _depth(unit, np.array(self.corners)) / _depth_of(self.corners))
 
 
-def in_polygon(points: Points, corners: Points) -> NDArray[np.bool_]:
-    """Return which points lie in a polygon, by the even-odd rule."""
-    inside = np.zeros(len(points), np.bool_)
-    x, y = points[:, 0], points[:, 1]
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if ay != by:
-            crosses = (ay > y) != (by > y)
-            inside ^= crosses & (x < ax + (y - ay) * (bx - ax) / (by - ay))
-    return inside
-
-
 def _depth(points: Points, corners: Points) -> NDArray[np.float64]:
     """Return the distance to a polygon's border, negative outside it."""
-    least = np.full(len(points), np.inf)
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        along = b - a
-        length2 = float(along @ along)
-        if length2 == 0.0:
-            continue
-        t = np.clip((points - a) @ along / length2, 0.0, 1.0)
-        least = np.minimum(least, np.hypot(*(points - a - t[:, None] * along).T))
-    return np.where(in_polygon(points, corners), least, -least)
+    from stippler.kernels.polygon import find_depths  # late: the first frame waits for no numba
+
+    out = np.empty(len(points))
+    find_depths(np.ascontiguousarray(points), corners, out)
+    return out
 
 
 @lru_cache(16)

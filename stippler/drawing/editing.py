@@ -30,7 +30,7 @@ class Changed:
     rows : array or None
         Of dots that a person has changed; None is all.
     places : bool
-        Whether a result has moved dots all over the drawing, besides.
+        Whether a result has moved or sized dots all over the drawing, besides.
     """
 
     rows: Rows | None
@@ -233,6 +233,22 @@ class Editing:
         self._index.drift(furthest_mm)
         self._places_changed = True
         return n
+
+    def merge_radii(self, radius_mm: NDArray[np.float32]) -> int:
+        """Give the dots of the run a result's radii, as `merge` does; return how many got one."""
+        run = self._run
+        if run is None:
+            return 0
+        if radius_mm.shape != run.radius_after.shape:
+            raise ValueError("the result is not one of this run")
+        rows = self._store.rows(run.ids)
+        mine = (rows >= 0) & (self._edited[run.ids] <= run.base)
+        mine[mine] = ~self.dots.fixed[rows[mine]]
+        run.radius_after[mine] = radius_mm[mine]
+        self._store.write("radius_mm", rows[mine], radius_mm[mine])
+        self.revision += 1
+        self._places_changed = True
+        return int(mine.sum())
 
     def end_run(self) -> None:
         """End the run; it is a step of the history, if it has changed anything."""

@@ -93,15 +93,16 @@ class DotIndex:
     def in_box(self, box: tuple[float, float, float, float], position_mm: Positions) -> Rows:
         """Return the rows of the dots in a closed box x0, y0, x1, y1; sorted."""
         lists = self._lists(position_mm)
-        n = rows_in_box(*box, *lists, self._out)
+        x0, y0, x1, y1 = map(float, box)  # of a whole number numba makes another kernel
+        n = rows_in_box(x0, y0, x1, y1, *lists, self._out)
         if n > len(self._out):
             self._out = np.empty(2 * n, np.int64)
-            rows_in_box(*box, *lists, self._out)
+            rows_in_box(x0, y0, x1, y1, *lists, self._out)
         return np.sort(self._out[:n])
 
     def nearest(self, x: float, y: float, reach_mm: float, position_mm: Positions) -> int | None:
         """Return the row of the dot nearest to a point within a reach."""
-        row = nearest_row(x, y, reach_mm, *self._lists(position_mm))
+        row = nearest_row(float(x), float(y), float(reach_mm), *self._lists(position_mm))
         return None if row < 0 else row
 
     def nearest_distances(
@@ -109,7 +110,7 @@ class DotIndex:
     ) -> NDArray[np.float64]:
         """Return how far each row's nearest neighbour is; `reach_mm` where none is nearer."""
         out = np.empty(len(rows))
-        nearest_distances(rows, reach_mm, *self._lists(position_mm), out)
+        nearest_distances(rows, float(reach_mm), *self._lists(position_mm), out)
         return out
 
     def apart(
@@ -117,7 +118,7 @@ class DotIndex:
     ) -> NDArray[np.bool_]:
         """Return which points keep a distance to all dots and to the points kept before them."""
         kept = np.empty(len(points), np.bool_)
-        keep_apart(points, distance_mm, *self._lists(position_mm), kept)
+        keep_apart(points, float(distance_mm), *self._lists(position_mm), kept)
         return kept
 
     def _lists(

@@ -8,7 +8,7 @@ from stippler.drawing.history import Step
 
 
 class Run:
-    """Where the dots were when the run began, and where its results have brought them.
+    """Where the dots were when the run began, and what its results have made of them.
 
     Attributes
     ----------
@@ -18,6 +18,8 @@ class Run:
         The revision it began with; dots edited later are left alone.
     after : (n, 2) float64
         By the order of `ids`.
+    radius_after : (n,) float32
+        By the order of `ids`.
     """
 
     def __init__(self, step: Step, dots: Dots, base: int) -> None:
@@ -25,10 +27,18 @@ class Run:
         self.ids = dots.id.copy()
         self._before = dots.position_mm.copy()
         self.after = self._before.copy()
+        self._radius_before = dots.radius_mm.copy()
+        self.radius_after = self._radius_before.copy()
 
     def edit(self) -> Edit:
         """Return what the results have changed."""
+        changes: dict[str, Change] = {}
         moved = (self.after != self._before).any(axis=1)
-        change = Change(self.ids[moved], self._before[moved], self.after[moved])
-        changes = {"position_mm": change} if moved.any() else {}
+        sized = self.radius_after != self._radius_before
+        for name, which, before, after in (
+            ("position_mm", moved, self._before, self.after),
+            ("radius_mm", sized, self._radius_before, self.radius_after),
+        ):
+            if which.any():
+                changes[name] = Change(self.ids[which], before[which], after[which])
         return Edit(self.step.label, changes, Placed.none(), Placed.none(), Shift.none())

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from stippler.errors import StipplerError
+from stippler.kernels.pool import stand_back
 
 Result = TypeVar("Result")
 
@@ -120,6 +121,7 @@ class Worker(Generic[Result]):
     # --- in the worker thread ---------------------------------------------------------------
 
     def _loop(self) -> None:
+        stand_back()
         while True:
             with self._changed:
                 self._running_id = None

@@ -6,16 +6,22 @@ and writes only to what belongs to ``start..stop``; so any number of threads giv
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
+import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
+
+_PATIENT = 10  # as `nice` counts
 
 _lock = threading.Lock()
 _pool: ThreadPoolExecutor | None = None
 _n_threads = 0
+_stands_back = False
+_n_callers = 0  # that share their ranges with the pool's threads just now
 
 
 def n_threads() -> int:
@@ -36,6 +42,23 @@ def set_threads(n: int) -> None:
         _pool, _n_threads = None, n
 
 
+def stand_back() -> None:
+    """Let others go first from now on: this thread, and those of the pool that are to come.
+
+    A window's thread that wakes up then has a core at once. Only on Linux has a thread a rank of
+    its own.
+    """
+    global _stands_back
+    _stands_back = True
+    _lower_rank()
+
+
+def _lower_rank() -> None:
+    if _stands_back and sys.platform == "linux":
+        with contextlib.suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _PATIENT)
+
+
 def _cores() -> int:
     try:
         return len(os.sched_getaffinity(0))
@@ -47,7 +70,9 @@ def _executor() -> ThreadPoolExecutor:
     global _pool
     with _lock:
         if _pool is None:
-            _pool = ThreadPoolExecutor(n_threads(), thread_name_prefix="kernel")
+            _pool = ThreadPoolExecutor(
+                n_threads(), thread_name_prefix="kernel", initializer=_lower_rank
+            )
         return _pool
 
 
@@ -59,7 +84,10 @@ def run_ranges(
     chunks: int = 4,
     cancel: Callable[[], bool] | None = None,
 ) -> bool:
-    """Run a range kernel over ``0..n``, on all cores when it is worth it.
+    """Run a range kernel over ``0..n``, on all cores when it is worth it and they are free.
+
+    While another thread has all cores at work, a caller runs its ranges alone: it would else wait
+    for a range that a thread has begun and finds no core to finish.
 
     Parameters
     ----------
@@ -101,18 +129,40 @@ def run_ranges(
     if threads == 1:
         work()
         return not stopped.is_set()
-    executor = _executor()
-    futures: list[Future[None]] = [executor.submit(work) for _ in range(min(threads, n_ranges) - 1)]
+    with _counted() as is_alone:
+        _share(work, min(threads, n_ranges) - 1 if is_alone else 0, stopped)
+    return not stopped.is_set()
+
+
+@contextlib.contextmanager
+def _counted() -> Iterator[bool]:
+    """Count a caller; tell whether it is the only one."""
+    global _n_callers
+    with _lock:
+        is_alone = _n_callers == 0
+        _n_callers += 1
+    try:
+        yield is_alone
+    finally:
+        with _lock:
+            _n_callers -= 1
+
+
+def _share(work: Callable[[], None], n_others: int, stopped: threading.Event) -> None:
+    """Run `work` in this thread and in some of the pool's, until all of them have ended."""
+    futures: list[Future[None]] = []
+    if n_others:
+        executor = _executor()
+        futures = [executor.submit(work) for _ in range(n_others)]
     try:
         work()
     except BaseException:
         stopped.set()
         raise
     finally:
-        # all ranges are taken: what has not begun (another caller keeps the threads busy) need not
+        # all ranges are taken: what has not begun need not
         begun = [future for future in futures if not future.cancel()]
         for future in begun:
             future.exception()  # wait for all before anyone touches the arrays again
     for future in begun:
         future.result()
-    return not stopped.is_set()

@@ -99,14 +99,16 @@ class DotBuffer:
     ) -> bool:
         """Upload some rows, which include all new ones; return as `set` does."""
         n_new = len(dots) - self.n
-        has_new = n_new >= 0 and np.count_nonzero(np.unique(rows[rows >= self.n])) == n_new
-        if not has_new or len(dots) > self._room or len(rows) > len(dots) // 4:
+        has_new = np.count_nonzero(np.unique(rows[rows >= self.n])) == max(n_new, 0)
+        much = max(len(rows), -n_new) > len(dots) // 4
+        if not has_new or len(dots) > self._room or much:
             return self.set(dots, selected, origin_mm)
-        if len(rows) == 0:
+        if len(rows) == 0 and n_new == 0:
             return False
         check_shapes(dots.elongation[rows], dots.angle_rad[rows], dots.roughness[rows])
+        closed = self._drop(len(dots))
         self._append(n_new)
-        slots = np.sort(self._slot_of_row[rows])
+        slots = np.union1d(self._slot_of_row[rows], closed)
         changed = self._row_of_slot[slots]
         fresh = gpu_dots.words(len(slots))
         gpu_dots.pack(dots, origin_mm, selected, changed, fresh)
@@ -136,9 +138,25 @@ class DotBuffer:
         self._slot_of_row = np.empty_like(self._row_of_slot)
         self._slot_of_row[self._row_of_slot] = np.arange(self.n)
 
+    def _drop(self, n: int) -> NDArray[np.intp]:
+        """Let go of the rows from n on; return the slots that the last dots have moved into."""
+        if n >= self.n:
+            return np.empty(0, np.intp)
+        gone = self._slot_of_row[n:]
+        stays = np.ones(self.n - n, np.bool_)
+        stays[gone[gone >= n] - n] = False
+        moved, gaps = n + np.flatnonzero(stays), np.sort(gone[gone < n])
+        self._words[gaps] = self._words[moved]
+        row = self._row_of_slot[moved]
+        self._row_of_slot[gaps] = row
+        self._slot_of_row[row] = gaps
+        self._row_of_slot, self._slot_of_row = self._row_of_slot[:n], self._slot_of_row[:n]
+        self.n = n
+        return gaps
+
     def _append(self, n_new: int) -> None:
         """Give new dots the slots after the last."""
-        if n_new:
+        if n_new > 0:
             new = np.arange(self.n, self.n + n_new)
             self._row_of_slot = np.concatenate([self._row_of_slot, new])
             self._slot_of_row = np.concatenate([self._slot_of_row, new])
@@ -152,6 +170,8 @@ class DotBuffer:
 
     def _upload_runs(self, slots: NDArray[np.intp]) -> None:
         self.revision += 1
+        if not len(slots):
+            return
         breaks = np.flatnonzero(np.diff(slots) > _GAP)
         first = slots[np.concatenate([[0], breaks + 1])].tolist()
         last = slots[np.concatenate([breaks, [len(slots) - 1]])].tolist()

@@ -99,7 +99,8 @@ class Renderer:
     ) -> None:
         """Upload only the given rows; rows past the end of what is uploaded are new dots.
 
-        If the number of dots changed in another way, all are uploaded.
+        Where there are fewer dots than before the rows are those of the ones that stay. If much has
+        changed, all are uploaded.
         """
         buffer = self._dots.buffer
         self._bound(buffer.update(dots, rows, self._chosen(dots, selected), self._origin_mm))

@@ -61,7 +61,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     Progress
         The last one has the stage "done".
     """
-    sheet = _sheet(reference, plan)
+    sheet = sheet_for(reference, plan)
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
 
     def snapshot(
@@ -131,13 +131,14 @@ def pulse_density(
         By the rule for radius and density; not solved for the tone.
     """
     plan = Plan(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
-    sheet = _sheet(Reference(darkness, float(darkness.shape[1])), plan)
+    sheet = sheet_for(Reference(darkness, float(darkness.shape[1])), plan)
     *_, (_, points) = _first_dots(sheet, plan)
     points = sheet.onto_ink(sheet.trim(points, None))
     return points * sheet.pixel_mm, sheet.radii(points) * sheet.pixel_mm
 
 
-def _sheet(reference: Reference, plan: Plan) -> Sheet:
+def sheet_for(reference: Reference, plan: Plan) -> Sheet:
+    """Prepare the sheet that a plan lays its dots out on."""
     n_dots = plan.n_dots
     if n_dots is None and plan.size_range_mm is None:
         n_dots = DEFAULT_DOTS

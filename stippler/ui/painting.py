@@ -47,7 +47,17 @@ class Painting:
         """Take an event in pixels of the canvas; return whether it was for a tool."""
         self._follow_session()
         if self._editing is None or not self._session.paintable:
-            return self._refused(event)
+            if not self._is_wanted(event):
+                return False
+            if not self._session.take_over():
+                return self._refuse()
+            self._follow_session()
+        return self._hand_on(event, page, px_per_mm)
+
+    def _hand_on(
+        self, event: Event, page: Callable[[float, float], Point], px_per_mm: float
+    ) -> bool:
+        assert self._editing is not None
         try:
             return self.toolbox.take(event, self._editing, page, px_per_mm)
         except Exception as error:  # noqa: BLE001 - the stroke is taken back; the editor lives on
@@ -62,12 +72,14 @@ class Painting:
         except Exception as error:  # noqa: BLE001 - the stroke is taken back; the editor lives on
             self._report(error)
 
-    def _refused(self, event: Event) -> bool:
-        wants = isinstance(event, Pressed) and event.button == LEFT and self.toolbox.brush
-        if not wants:
-            return False
+    def _is_wanted(self, event: Event) -> bool:
+        """Whether an event is one that begins to paint."""
+        pressed = isinstance(event, Pressed) and event.button == LEFT
+        return pressed and self.toolbox.brush is not None
+
+    def _refuse(self) -> bool:
         if self._session.busy:
-            text = "new dots are being made; paint when they are there, or stop the work"
+            text = "the first dots are being placed; paint as soon as they move, or stop the work"
         else:
             text = "there is no page to paint on; open a picture, or begin a new page (Ctrl+N)"
         self._session.messages.say(text, WARNING)

@@ -145,6 +145,26 @@ class Session:
         )
         self.total = iterations
 
+    def take_over(self) -> bool:
+        """Make the dots that a job is relaxing the drawing's, so that they can be edited meanwhile.
+
+        The job goes on with just these dots, as one step of the history, and leaves alone what a
+        person has changed. Returns whether there was such a job.
+        """
+        plan, reference, phase = self.running_plan, self.reference, self.phase
+        relaxes = self.position_mm is not None and self.stage in ("relax", "tone")
+        if self._request is None or plan is None or reference is None or not relaxes:
+            return False
+        n_done = self.done if self.stage == "relax" else plan.iterations
+        self._keep_dots()
+        assert self.editing is not None
+        place = self.editing.begin_run("Settle").position_mm
+        self._run(phase, "relax", lambda: work.carry_on(reference, plan, place, n_done))
+        self.done, self.total = n_done, plan.iterations
+        if phase == "paused":
+            self._worker.pause()
+        return True
+
     def undo(self) -> None:
         """Take the last step back; a relaxation that goes on ends and is taken back."""
         editing = self.editing
@@ -337,6 +357,8 @@ class Session:
             self.revision += 1
         if result.moved_mm is not None and self.editing is not None:
             self.editing.merge(result.moved_mm)
+            if result.radius_mm is not None:
+                self.editing.merge_radii(result.radius_mm)
         if result.stage == "relax":
             self._steps.note(self._clock(), result.done)
 

@@ -16,6 +16,7 @@ from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
 Rect = tuple[float, float, float, float]
 LABEL_WIDTH = 84.0
 _MARK_ALL = imgui.InputTextFlags_.auto_select_all
+_EXPLAINED = imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
 
 
 @dataclass(slots=True)
@@ -82,9 +83,7 @@ class Widgets:
 
     def tip(self, text: str) -> None:
         """Explain the last control when the pointer rests on it, and does not hold it."""
-        if not imgui.is_item_active() and imgui.is_item_hovered(
-            imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
-        ):
+        if not imgui.is_item_active() and imgui.is_item_hovered(_EXPLAINED):
             imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
             if imgui.begin_tooltip():
                 imgui.push_text_wrap_pos(280.0 * self.scale)

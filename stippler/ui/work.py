@@ -61,6 +61,8 @@ class Work:
         The dots, once there are some.
     moved_mm : (n, 2) float64 or None
         Where a relaxation of the drawing's own dots has brought them.
+    radius_mm : (n,) float32 or None
+        What their radii are to be.
     """
 
     stage: str
@@ -69,6 +71,7 @@ class Work:
     reference: Reference | None = None
     progress: Progress | None = None
     moved_mm: NDArray[np.float64] | None = None
+    radius_mm: NDArray[np.float32] | None = None
 
 
 def stipple_picture(
@@ -132,6 +135,18 @@ def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Itera
     for k in range(iterations):
         engine.step()
         yield Work("relax", k + 1, iterations, moved_mm=engine.points)
+
+
+def carry_on(
+    reference: Reference, plan: Plan, position_mm: NDArray[np.float64], n_done: int
+) -> Iterator[Work]:
+    """Go on with a stippling whose dots have become the drawing's after so many steps."""
+    from stippler.stippling.carry_on import carry_on
+
+    yield Work("relax", n_done, plan.iterations)
+    for made in carry_on(reference, plan, position_mm, n_done):
+        radius_mm = made.radius_mm if made.stage == "done" else None
+        yield Work(made.stage, made.done, made.total, None, None, made.position_mm, radius_mm)
 
 
 def _prepared_kernels() -> Iterator[tuple[int, int]]:

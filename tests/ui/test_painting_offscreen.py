@@ -220,3 +220,61 @@ def test_stippling_again_is_a_step_that_can_be_taken_back(desk, picture: Path) -
     assert len(editing.dots) < len(first)
     desk.host.key("z", ctrl=True)
     assert same(editing.dots, first)
+
+
+def test_dots_that_are_still_being_stippled_are_painted_on(desk, picture: Path) -> None:
+    session = desk.app.session
+    session.edit_plan(n_dots=2000, iterations=100_000)
+    desk.host.drop(picture)
+    desk.host.until(lambda: session.stage == "relax" and session.done > 1, "the relaxation")
+    assert not session.paintable
+    desk.host.key("e")
+    paint(desk, (50, 45), (70, 45))
+    editing = session.editing
+    assert session.relaxing
+    assert session.done > 1
+    (run, stroke) = editing.history.steps
+    assert run.is_open
+    erased = stroke.edit.removed.dots.id
+    assert len(erased)
+    desk.host.key("b")
+    paint(desk, (50, 35), (60, 35))
+    resized = editing.history.steps[-1].edit.changes["radius_mm"]
+    at = session.done
+    desk.host.until(lambda: session.done > at + 3, "more steps")
+    session.stop()
+    assert not session.busy
+    assert (editing.rows(erased) < 0).all()
+    kept = editing.rows(resized.ids)
+    assert np.array_equal(editing.dots.radius_mm[kept], resized.after)
+    for _ in range(3):
+        desk.host.key("z", ctrl=True)
+    assert editing.history.n_done == 0
+    assert (editing.rows(erased) >= 0).all()
+
+
+def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
+    desk, picture: Path
+) -> None:
+    session = desk.app.session
+    session.edit_plan(n_dots=2000, iterations=60)
+    desk.host.drop(picture)
+    desk.host.until(lambda: session.stage == "relax" and session.done > 1, "the relaxation")
+    session.pause()
+    desk.host.key("b")
+    paint(desk, (50, 45), (70, 45))
+    assert session.phase == "paused"
+    before = session.editing.dots.copy()
+    touched = session.editing.history.steps[-1].edit.changes["radius_mm"].ids
+    session.resume()
+    desk.host.until(lambda: not session.busy, "the end")
+    assert session.phase == "done"
+    dots = session.editing.dots
+    assert np.array_equal(dots.id, before.id)
+    by_hand = np.isin(dots.id, touched)
+    same_size = dots.radius_mm == before.radius_mm
+    assert same_size[by_hand].all()
+    assert same_size[~by_hand].mean() < 0.1
+    session.undo()
+    session.undo()
+    assert not session.editing.history.n_done

@@ -1,0 +1,329 @@
+"""The editor under random input at full speed: what fails, and whether memory grows.
+
+``python -m benchmarks.soak [MINUTES] [SEED]`` prints what it did and what it found; ten minutes are
+what is promised, one is the topic's. Mouse, wheel, keys, text, dropped pictures (broken ones, too),
+dialogs, new pages and relaxations come from a seeded generator, through the same callbacks as a
+person's, into an offscreen window.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+import os
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui  # isort: skip - first: glfw then uses its library
+import glfw
+import numpy as np
+
+from stippler.app import App
+from stippler.drawing.drawing import Page
+from stippler.stippling.plan import Plan
+
+if TYPE_CHECKING:
+    from benchmarks.figures import Figure
+
+_SIZE = (1000, 700)
+_ROUND_S = 20.0
+_KEYS = (
+    *"asxheiuljbwgkcmvfrtp1",
+    *("left_bracket", "right_bracket", "enter", "delete", "space", "tab", "f1"),
+    *("escape",) * 8,
+    *("up", "down", "home", "backspace", "left_alt", "left_shift"),
+)
+_CTRL_KEYS = (*"zzzzzzyyyyyylllldddaapnos", "enter")
+_BUTTONS = (glfw.MOUSE_BUTTON_LEFT, glfw.MOUSE_BUTTON_MIDDLE, glfw.MOUSE_BUTTON_RIGHT)
+_CHANCES = (0.4, 0.4, 0.05, 0.1, 0.05)  # of the pictures
+_MOD_BITS = (glfw.MOD_CONTROL, glfw.MOD_SHIFT, glfw.MOD_ALT)
+
+
+class Faults(logging.Handler):
+    """Collects what the editor reports as a fault of its own, not of a person or a file."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.ERROR)
+        self.found: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Take a line of the log."""
+        text = record.getMessage()
+        if " failed (" in text or "unexpected" in text:
+            why = self.format(record) if record.exc_info else text
+            self.found.append(why)
+
+
+class Hand:
+    """Random input for an editor; the same for the same seed and the same course of things.
+
+    Attributes
+    ----------
+    n_frames : int
+    acts : Counter
+        How often each kind of input was given.
+    pictures : list of Path
+        The last two cannot be read.
+    """
+
+    def __init__(self, app: App, folder: Path, seed: int) -> None:
+        self.app, self._folder = app, folder
+        self._rng = np.random.default_rng(seed)
+        self._address = app.window.address
+        self._at = np.array([500.0, 350.0])
+        self._mods = 0
+        self._down: set[int] = set()
+        self.n_frames, self.acts = 0, Counter[str]()
+        self.pictures = _pictures(folder, self._rng)
+        imgui.backends.glfw_window_focus_callback(self._address, 1)
+        imgui.backends.glfw_cursor_enter_callback(self._address, 1)
+        acts: dict[str, tuple[float, Callable[[], None]]] = {
+            "move": (60.0, self._move),
+            "button": (16.0, self._button),
+            "wheel": (4.0, self._wheel),
+            "key": (6.0, self._key),
+            "command": (3.0, self._command),
+            "text": (1.0, self._text),
+            "modifier": (2.0, self._modifier),
+            "control": (2.0, self._control),
+            "drop": (0.05, self._drop),
+            "new page": (0.02, self._new_page),
+            "focus": (0.2, self._focus),
+            "resize": (0.1, self._resize),
+        }
+        weights = np.array([weight for weight, _ in acts.values()])
+        self._share = weights / weights.sum()
+        self._acts = [(name, act) for name, (_, act) in acts.items()]
+
+    def act(self) -> None:
+        """Give one random input, and draw a frame if one is due."""
+        name, act = self._acts[self._rng.choice(len(self._acts), p=self._share)]
+        self.acts[name] += 1
+        act()
+        if self._rng.random() < 0.7:  # else several inputs come in one frame
+            self.n_frames += self.app.step(0.0)
+
+    def let_go(self) -> None:
+        """Release what is held, and leave dialogs and fields."""
+        for button in list(self._down):
+            self._press(button, glfw.RELEASE)
+        self._mods = 0
+        for _ in range(3):
+            self._type("escape", 0)
+            self.n_frames += self.app.step(0.0)
+
+    def _move(self) -> None:
+        chance = self._rng.random()
+        if chance < 0.03:
+            self._at = self._rng.uniform((-20, -20), (_SIZE[0] + 20, _SIZE[1] + 20))
+        elif chance < 0.12:  # back to the page
+            self._at = self._rng.uniform((360, 20), (_SIZE[0], _SIZE[1] - 40))
+        else:
+            self._at = self._at + self._rng.normal(0, 15, 2)
+        imgui.backends.glfw_cursor_pos_callback(self._address, *map(float, self._at))
+
+    def _button(self) -> None:
+        if self._down and self._rng.random() < 0.7:
+            self._press(next(iter(self._down)), glfw.RELEASE)
+        else:
+            which = _BUTTONS[self._rng.choice(3, p=(0.85, 0.1, 0.05))]
+            self._press(which, glfw.RELEASE if which in self._down else glfw.PRESS)
+
+    def _press(self, which: int, action: int) -> None:
+        (self._down.add if action == glfw.PRESS else self._down.discard)(which)
+        imgui.backends.glfw_mouse_button_callback(self._address, which, action, self._mods)
+
+    def _wheel(self) -> None:
+        imgui.backends.glfw_scroll_callback(self._address, 0.0, float(self._rng.normal(0, 2)))
+
+    def _key(self) -> None:
+        self._type(str(self._rng.choice(_KEYS)), self._mods)
+
+    def _command(self) -> None:
+        shift = glfw.MOD_SHIFT if self._rng.random() < 0.3 else 0
+        self._type(str(self._rng.choice(_CTRL_KEYS)), glfw.MOD_CONTROL | shift)
+
+    def _type(self, name: str, mods: int) -> None:
+        code = getattr(glfw, f"KEY_{name.upper()}")
+        imgui.backends.glfw_key_callback(self._address, code, 0, glfw.PRESS, mods)
+        if self._rng.random() < 0.3:
+            self.n_frames += self.app.step(0.0)
+        imgui.backends.glfw_key_callback(self._address, code, 0, glfw.RELEASE, mods)
+
+    def _text(self) -> None:
+        for sign in self._rng.choice(list("0123456789.-eab"), self._rng.integers(1, 5)):
+            imgui.backends.glfw_char_callback(self._address, ord(str(sign)))
+
+    def _modifier(self) -> None:
+        self._mods = int(self._rng.choice([0, *_MOD_BITS]))
+
+    def _control(self) -> None:
+        """Click one of the controls that are shown."""
+        marks = list(self.app.editor.widgets.marks.values())
+        if marks:
+            x0, y0, x1, y1 = marks[self._rng.integers(len(marks))]
+            self._at = self._rng.uniform((x0, y0), (x1, y1))
+            imgui.backends.glfw_cursor_pos_callback(self._address, *map(float, self._at))
+            for action in (glfw.PRESS, glfw.RELEASE):
+                self.n_frames += self.app.step(0.0)
+                self._press(glfw.MOUSE_BUTTON_LEFT, action)
+
+    def _drop(self) -> None:
+        n = 1 if self._rng.random() < 0.9 else 2
+        self.app.window.drop([self.pictures[k] for k in self._rng.choice(5, n, p=_CHANCES)])
+
+    def _new_page(self) -> None:
+        self.app.session.new(Page(*map(float, self._rng.uniform(20, 200, 2))))
+
+    def _focus(self) -> None:
+        for focused in (0, 1):
+            imgui.backends.glfw_window_focus_callback(self._address, focused)
+
+    def _resize(self) -> None:
+        size = self._rng.integers((200, 150), (1400, 900))
+        glfw.set_window_size(self.app.window._handle, *map(int, size))
+
+
+def _pictures(folder: Path, rng: np.random.Generator) -> list[Path]:
+    """Write a few pictures: noise, a ramp, white, one that is cut off, and one that is none."""
+    from PIL import Image
+
+    ramp = np.tile(np.linspace(0, 255, 300, dtype=np.uint8), (200, 1))
+    noise = rng.integers(0, 256, (120, 90, 3), np.uint8)
+    white = np.full((60, 80), 255, np.uint8)
+    paths = [folder / f"{name}.png" for name in ("noise", "ramp", "white", "cut", "none")]
+    for path, values in zip(paths, (noise, ramp, white, ramp), strict=False):
+        Image.fromarray(values).save(path)
+    paths[3].write_bytes(paths[3].read_bytes()[:200])
+    paths[4].write_text("no picture")
+    return paths
+
+
+def check_drawing(app: App) -> None:
+    """Raise if the drawing is not whole: ids unique and found, dots on the page, kept by place."""
+    editing = app.session.editing
+    if editing is None:
+        return
+    dots, page = editing.dots, editing.drawing.page
+    assert len(np.unique(dots.id)) == len(dots), "ids are not unique"
+    assert np.array_equal(editing.rows(dots.id), np.arange(len(dots))), "ids are not found"
+    assert np.isfinite(dots.position_mm).all(), "a place is not finite"
+    size = (page.width_mm, page.height_mm)
+    on_page = (dots.position_mm >= 0) & (dots.position_mm <= size)
+    assert on_page.all(), "a dot is off the page"
+    assert (dots.radius_mm > 0).all(), "a dot has no size"
+    x, y = dots.position_mm.T
+    box = (0.2 * size[0], 0.3 * size[1], 0.6 * size[0], 0.7 * size[1])
+    inside = (x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])
+    assert np.array_equal(editing.in_box(box), np.flatnonzero(inside)), "the index has lost dots"
+
+
+class Soak:
+    """An editor under random input for so long.
+
+    Attributes
+    ----------
+    hand : Hand
+    faults : list of str
+    memory_mb : list of float
+        At the end of each round, after its history is gone and garbage is collected.
+    n_steps : int
+        Of the histories at the ends of the rounds.
+    """
+
+    def __init__(self, folder: Path, seed: int) -> None:
+        os.environ["STIPPLER_CONFIG_DIR"] = str(folder / "config")
+        self._log = Faults()
+        logging.getLogger("stippler").addHandler(self._log)
+        plan = Plan(n_dots=3000, iterations=5)
+        self.app = App(plan, tone="linear", width_mm=100.0, size=_SIZE, offscreen=True)
+        self.hand = Hand(self.app, folder, seed)
+        self.memory_mb: list[float] = []
+        self.n_steps = 0
+
+    @property
+    def faults(self) -> list[str]:
+        """What the editor reported as its own faults."""
+        return self._log.found
+
+    def run_round(self, goes_on: Callable[[], bool]) -> None:
+        """Begin with a drawing, give random input for as long as asked, check, note the memory."""
+        self.app.session.open(self.hand.pictures[len(self.memory_mb) % 2])
+        self._wait()
+        while goes_on():
+            self.hand.act()
+            if self.hand.n_frames % 200 == 0 and not self.app.editor.painting.is_busy:
+                check_drawing(self.app)
+        self.hand.let_go()
+        check_drawing(self.app)
+        if self.app.session.editing is not None:
+            self.n_steps += len(self.app.session.editing.history.steps)
+        self.app.session.new(Page(100.0, 70.0))
+        self._wait()
+        gc.collect()
+        self.memory_mb.append(_memory_mb())
+
+    def _wait(self) -> None:
+        while self.app.session.busy:
+            self.app.step(0.02)
+
+    def close(self) -> None:
+        """Close the editor."""
+        self.app.close()
+        logging.getLogger("stippler").removeHandler(self._log)
+
+
+def _memory_mb() -> float:
+    """Return the memory this process has now; Linux."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def figures(quick: bool = False, minutes: float = 1.0, seed: int = 1) -> list[Figure]:
+    """Soak the editor; `quick` for ten seconds."""
+    from benchmarks.figures import Figure
+
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        soak = Soak(Path(folder), seed)
+        try:
+            end = time.monotonic() + (10.0 if quick else 60.0 * minutes)
+            while time.monotonic() < end:
+                round_end = min(time.monotonic() + _ROUND_S, end)
+                soak.run_round(lambda: time.monotonic() < round_end)  # noqa: B023
+        finally:
+            soak.close()
+            os.chdir(before)
+    for fault in soak.faults:
+        sys.stderr.write(f"{fault}\n")
+    # the first rounds load kernels, fonts and file formats
+    settled = soak.memory_mb[min(2, len(soak.memory_mb) - 1)]
+    acts = ", ".join(f"{n} {name}" for name, n in soak.hand.acts.most_common())
+    return [
+        Figure("random input: faults", len(soak.faults), "faults", 0.0, note=f"seed {seed}"),
+        Figure("random input: frames", soak.hand.n_frames, "frames", note=acts),
+        Figure("random input: steps of history at the ends of rounds", soak.n_steps, "steps"),
+        Figure(
+            "random input: memory grown since the third round", soak.memory_mb[-1] - settled, "MB",
+            note=f"{len(soak.memory_mb)} rounds, {soak.memory_mb[-1]:.0f} MB at the end",
+        ),
+    ]  # fmt: skip
+
+
+def main() -> None:
+    """Print the figures."""
+    numbers = [float(text) for text in sys.argv[1:]]
+    minutes = numbers[0] if numbers else 1.0
+    seed = int(numbers[1]) if len(numbers) > 1 else 1
+    for figure in figures(minutes=minutes, seed=seed):
+        sys.stdout.write(f"{figure.name:<52}{figure.value:9.1f} {figure.unit:<7} {figure.note}\n")
+
+
+if __name__ == "__main__":
+    main()
