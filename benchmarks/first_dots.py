@@ -14,9 +14,9 @@ from benchmarks.figures import Figure, median_s
 from stippler.drawing.reference import Reference
 from stippler.stippling.halftone import FirstDots, pulse_density, supersampling
 from stippler.stippling.plan import Plan
+from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
 from stippler.stippling.stipple import stages
-from stippler.stippling.tone import solve_radii
 
 _PICTURE = Path(__file__).parents[1] / "tests/data/sphere_ramp.png"
 _DOTS = 60_000

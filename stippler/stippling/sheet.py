@@ -77,10 +77,11 @@ class Sheet:
         """Dots per square pixel, bleed included; white stays exactly 0."""
         levels = np.linspace(0.0, 1.0, 4097)
         table = self.rule.density(levels)
-        density = np.interp(self.darkness, levels, table).astype(np.float32)
-        if self.bleed:
-            density = np.pad(density, self.bleed, mode="symmetric")
-        return density
+        return self.with_bleed(np.interp(self.darkness, levels, table).astype(np.float32))
+
+    def with_bleed(self, field: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Repeat a field of the page in the bleed, mirrored."""
+        return np.pad(field, self.bleed, mode="symmetric") if self.bleed else field
 
     def outline_mm(self) -> NDArray[np.float64]:
         """Corners of the sheet, bleed included; the page's top left is the origin."""
@@ -113,10 +114,20 @@ class Sheet:
 
     def radii(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the radius that the rule gives each dot of the page."""
+        return self.rule.radius(self._under(points))
+
+    def wanted_at(
+        self, points: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the radius and the density that the rule gives where each dot of the page lies."""
+        values = self._under(points)
+        return self.rule.radius(values), self.rule.density(values)
+
+    def _under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
         values = np.empty(len(points), np.float32)
         points = np.ascontiguousarray(points)
         run_ranges(sample, len(points), points, self.darkness, values)
-        return self.rule.radius(values)
+        return values
 
     def onto_ink(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Move dots off pixels that are white, to the nearest that is not."""

@@ -10,11 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
+from stippler.stippling.finish import even_rim, part_close
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
+from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
 from stippler.stippling.starts import floyd_steinberg, hexagonal, random_dots
-from stippler.stippling.tone import Shortfall, shortfall, solve_radii
+from stippler.stippling.tone import Shortfall, shortfall
+
+_LAST_STEPS = 5  # weighted by the darkness itself
+_GIVES = (0.6, 0.3, 0.2, 0.1)  # how far a dot may move across the page's edge, in its radius
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,12 +86,17 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
-    points = sheet.onto_ink(sheet.trim(points, plan.n_dots))
+    points = sheet.trim(points, plan.n_dots)
+    if plan.weighted and plan.iterations:
+        for share, finished in _finish(sheet, points):
+            points = finished
+            yield snapshot("tone", round(200 * share), 1000, points)
+    points = sheet.onto_ink(points)
     radii = np.empty(0)
     for share, solved in solve_radii(points, sheet.darkness, sheet.rule):
         radii = solved
         if share < 1.0:
-            yield snapshot("tone", round(1000 * share), 1000, points)
+            yield snapshot("tone", round(200 + 800 * share), 1000, points)
     lack = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_dots)
     yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=lack)
 
@@ -167,16 +177,42 @@ def _relax(
 ) -> Iterator[tuple[NDArray[np.float64], float]]:
     """Run Lloyd steps, weighted by the square of the density, since dots settle at its root.
 
-    The paper's form weighs all ink alike; white weighs nothing in either, and draws no dots.
+    The last steps are weighted by the darkness itself: each dot then lies in the midst of the ink
+    that its cell asks for, and fine detail is drawn where it is; its size makes up for the
+    density that is lost, so dots of one size do without. The paper's form weighs all ink
+    alike; white weighs nothing in any form, and draws no dots.
     """
-    from stippler.stippling.relax import DensityField, Relaxation
+    from stippler.stippling.density import DensityField
+    from stippler.stippling.relax import Relaxation
 
     outline = sheet.outline_mm()
+    corner = (float(outline[0, 0]), float(outline[0, 1]))
+    n_last = min(_LAST_STEPS, plan.iterations // 3) if plan.weighted and sheet.rule.varies else 0
+    for n_steps, last in ((plan.iterations - n_last, False), (n_last, True)):
+        if not n_steps:
+            continue
+        weight = sheet.with_bleed(sheet.darkness) if last else _weight(sheet, plan)
+        at = np.clip(points * sheet.pixel_mm, outline[0], outline[2])
+        engine = Relaxation(at, outline, density=DensityField(weight, sheet.pixel_mm, corner))
+        for _ in range(n_steps):
+            report = engine.step()
+            points = np.asarray(engine.points) / sheet.pixel_mm
+            yield points, float(report.mean_mm)
+
+
+def _weight(sheet: Sheet, plan: Plan) -> NDArray[np.float32]:
     density = sheet.density()
-    weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
-    field = DensityField(weight, sheet.pixel_mm, (float(outline[0, 0]), float(outline[0, 1])))
-    at = np.clip(points * sheet.pixel_mm, outline[0], outline[2])
-    engine = Relaxation(at, outline, density=field)
-    for _ in range(plan.iterations):
-        report = engine.step()
-        yield np.asarray(engine.points) / sheet.pixel_mm, float(report.mean_mm)
+    return np.square(density / density.max()) if plan.weighted else np.sign(density)
+
+
+def _finish(
+    sheet: Sheet, points: NDArray[np.float64]
+) -> Iterator[tuple[float, NDArray[np.float64]]]:
+    """Part dots that lie too close, and even out the ink along the edge of a page that bleeds."""
+    points = part_close(points, sheet)
+    yield 0.2, points
+    if not sheet.bleed:
+        return
+    for k, give in enumerate(_GIVES):
+        points = part_close(even_rim(points, sheet, give), sheet)
+        yield 0.2 + 0.8 * (k + 1) / len(_GIVES), points
