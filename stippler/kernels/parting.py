@@ -65,6 +65,7 @@ def find_close(
     frame: Array,
     share: float,
     enough: Array,
+    awake: Array,
     nearest: Array,
     lack: Array,
 ) -> None:
@@ -77,12 +78,17 @@ def find_close(
     xy : (n, 2) float64
         Sorted by grid cell; `cell_start` and `frame` as for `stippler.kernels.tone.build_cells`.
     share : float
+    awake : (n,) bool
+        Only these are looked at; of the others `lack` is set to 0 and `nearest` is left.
     nearest : (n,) int32
     lack : (n,) float64
         0 for a dot that is far enough, or has fewer neighbours than seven.
     """
     distance2 = np.empty(_NEIGHBOURS)
     for i in range(start, stop):
+        if not awake[i]:
+            lack[i] = 0.0
+            continue
         j = _look(xy, i, cell_start, frame, distance2, -1)
         nearest[i] = j
         lack[i] = 0.0
@@ -94,12 +100,18 @@ def find_close(
 
 @kernel
 def push_apart(
-    xy: Array, nearest: Array, lack: Array, darkness: Array, rim: Array, moves: Array
+    xy: Array,
+    nearest: Array,
+    lack: Array,
+    darkness: Array,
+    rim: Array,
+    moves: Array,
+    awake: Array,
 ) -> int:
     """Move each dot that is too close, and its nearest, half of what lacks; return how many.
 
     A dot nearer to the page's edge than `rim` (n,) only slides along it, and none moves onto
-    white. `moves` (n, 2) is scratch.
+    white. `moves` (n, 2) is scratch; `awake` gets the dots that moved.
     """
     h, w = darkness.shape
     n = 0
@@ -124,7 +136,8 @@ def push_apart(
         moves[j, 0] -= dx
         moves[j, 1] -= dy
     for i in range(len(xy)):
-        if moves[i, 0] == 0.0 and moves[i, 1] == 0.0:
+        awake[i] = moves[i, 0] != 0.0 or moves[i, 1] != 0.0
+        if not awake[i]:
             continue
         x = xy[i, 0]
         y = xy[i, 1]

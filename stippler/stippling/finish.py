@@ -16,11 +16,14 @@ from stippler.stippling.sheet import Sheet
 _APART = 0.5  # of the distance to the seventh neighbour
 _ENOUGH = 1.0  # of the spacing that the density asks for
 _ROUNDS = 5
-_BAND = 6.0  # mean spacings; whose cells may have to do with the edge
+_BAND = 3.0  # mean spacings; dots that moves across the edge may come close to
+_CELLS = 6.0  # mean spacings; dots whose cells bound those of dots at the edge
 _NEAR = 1.6  # radii; dots so near the edge may come to touch it
 
 
-def part_close(points: NDArray[np.float64], sheet: Sheet) -> NDArray[np.float64]:
+def part_close(
+    points: NDArray[np.float64], sheet: Sheet, awake: NDArray[np.bool_] | None = None
+) -> NDArray[np.float64]:
     """Push dots apart that lie closer than half as far as their seventh neighbours.
 
     Relaxed dots keep a few such pairs, one in a hundred, where rows of dots end. Those at the
@@ -30,24 +33,33 @@ def part_close(points: NDArray[np.float64], sheet: Sheet) -> NDArray[np.float64]
     ----------
     points : (n, 2) float64, pixels
         Not modified.
+    awake : (n,) bool, optional
+        Look only at these and their nearest; None: at all.
     """
     n = len(points)
     points = np.array(points)
     if n < 2:
         return points
-    nearest, lack, moves = np.empty(n, np.int32), np.empty(n), np.empty((n, 2))
+    radii, density = sheet.wanted_at(points)
+    enough = _ENOUGH / np.sqrt(np.maximum(density, 1e-12))
+    rim = radii if sheet.bleed else np.zeros(n)
+    awake = np.ones(n, bool) if awake is None else np.array(awake)
+    order, cell_start, frame = sorted_by_place(points, sheet.darkness, n)
+    nearest, lack, moves = np.zeros(n, np.int32), np.empty(n), np.empty((n, 2))
     for _ in range(_ROUNDS):
-        order, cell_start, frame = sorted_by_place(points, sheet.darkness, n)
-        xy = points[order]
-        radii, density = sheet.wanted_at(xy)
-        enough = _ENOUGH / np.sqrt(np.maximum(density, 1e-12))
-        run_ranges(find_close, n, xy, cell_start, frame, _APART, enough, nearest, lack)
-        rim = radii if sheet.bleed else np.zeros(n)
-        n_close = push_apart(xy, nearest, lack, sheet.darkness, rim, moves)
-        points[order] = xy
+        xy, up = points[order], awake[order]
+        run_ranges(find_close, n, xy, cell_start, frame, _APART, enough[order], up, nearest, lack)
+        n_close = push_apart(xy, nearest, lack, sheet.darkness, rim[order], moves, up)
+        points[order], awake[order] = xy, up
         if not n_close:
             break
+        order, cell_start, frame = sorted_by_place(points, sheet.darkness, n)
     return points
+
+
+def at_edge(points: NDArray[np.float64], sheet: Sheet) -> NDArray[np.bool_]:
+    """Tell which dots have to do with the page's edge."""
+    return _inwards(points, sheet) < _BAND * _spacing(points, sheet)
 
 
 def even_rim(points: NDArray[np.float64], sheet: Sheet, give: float) -> NDArray[np.float64]:
@@ -65,8 +77,7 @@ def even_rim(points: NDArray[np.float64], sheet: Sheet, give: float) -> NDArray[
     """
     points = np.array(points)
     darkness = sheet.darkness
-    h, w = darkness.shape
-    band = np.flatnonzero(_inwards(points, (w, h)) < _BAND * math.sqrt(h * w / max(len(points), 1)))
+    band = np.flatnonzero(_inwards(points, sheet) < _CELLS * _spacing(points, sheet))
     if not len(band):
         return points
     *_, (_, radii) = solve_radii(points[band], darkness, sheet.rule, len(points))
@@ -77,7 +88,7 @@ def even_rim(points: NDArray[np.float64], sheet: Sheet, give: float) -> NDArray[
         (0, False, darkness[:, 0]),
         (0, True, darkness[:, -1]),
     ):
-        size = (w, h)[axis]
+        size = darkness.shape[1 - axis]
         inwards = points[band, axis]
         if far:
             inwards = size - inwards
@@ -91,7 +102,12 @@ def even_rim(points: NDArray[np.float64], sheet: Sheet, give: float) -> NDArray[
     return points
 
 
-def _inwards(points: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.float64]:
+def _inwards(points: NDArray[np.float64], sheet: Sheet) -> NDArray[np.float64]:
     """Return how far dots lie from the nearest edge of the page."""
-    distance: NDArray[np.float64] = np.minimum(points, np.array(size) - points).min(axis=1)
+    size = np.array(sheet.darkness.shape[::-1], np.float64)
+    distance: NDArray[np.float64] = np.minimum(points, size - points).min(axis=1)
     return distance
+
+
+def _spacing(points: NDArray[np.float64], sheet: Sheet) -> float:
+    return math.sqrt(sheet.darkness.size / max(len(points), 1))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
-from stippler.stippling.finish import even_rim, part_close
+from stippler.stippling.finish import at_edge, even_rim, part_close
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.radii import solve_radii
@@ -214,5 +214,6 @@ def _finish(
     if not sheet.bleed:
         return
     for k, give in enumerate(_GIVES):
-        points = part_close(even_rim(points, sheet, give), sheet)
+        points = even_rim(points, sheet, give)
+        points = part_close(points, sheet, at_edge(points, sheet))
         yield 0.2 + 0.8 * (k + 1) / len(_GIVES), points

@@ -15,8 +15,8 @@ def ask(points, share, enough, size=100):
     field = np.ones((size, size), np.float32)
     order, cell_start, frame = sorted_by_place(points, field, n)
     xy = points[order]
-    nearest, lack = np.empty(n, np.int32), np.empty(n)
-    find_close(0, n, xy, cell_start, frame, share, np.full(n, enough), nearest, lack)
+    nearest, lack, awake = np.empty(n, np.int32), np.empty(n), np.ones(n, bool)
+    find_close(0, n, xy, cell_start, frame, share, np.full(n, enough), awake, nearest, lack)
     return xy, nearest, lack
 
 
