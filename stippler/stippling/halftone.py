@@ -26,7 +26,7 @@ CELLS_PER_DOT = 14.0
 _REACH = 200  # cells; the farthest a region looks for its charge
 _SEEDS_AT_ONCE = 250_000
 _VARIANTS = 8
-_SKEW = {"circular": 0.8, "triangular": 0.25}
+_SKEW = {"circular": 1.0, "triangular": 0.25}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
