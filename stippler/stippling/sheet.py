@@ -57,8 +57,9 @@ class Sheet:
         n_dots: int | None,
         size_range_mm: tuple[float, float] | None,
         bleeds: bool,
+        faintest: float | None = None,
     ) -> Sheet:
-        """Prepare a reference for so many dots or dots of such sizes."""
+        """Prepare a reference for so many dots or dots of such sizes; `faintest` as in a rule."""
         width, height = reference.width_mm, reference.height_mm
         guess = n_dots or _number_for(reference, size_range_mm)
         darkness, scale = _at_resolution(reference.darkness, guess)
@@ -70,7 +71,7 @@ class Sheet:
         if bleeds and guess >= _MIN_DOTS and _border(darkness).any():
             bleed = math.ceil(_BLEED * math.sqrt(darkness.size / guess))
         border = _border(darkness) if bleed else darkness[0, :0]
-        rule = rule_for(darkness, n_dots, size_px, border)
+        rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
         return cls(darkness, bleed, rule, pixel_mm, (width, height))
 
     def density(self) -> NDArray[np.float32]:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import affinity
+from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.reference import Reference
 from stippler.stippling.finish import at_edge, even_rim, part_close
+from stippler.stippling.halftone import DROPPED, outside_area, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
-from stippler.stippling.starts import floyd_steinberg, hexagonal, random_dots
+from stippler.stippling.starts import check_area, floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.tone import Shortfall, shortfall
 
 _LAST_STEPS = 5  # weighted by the darkness itself
@@ -67,6 +70,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         The last one has the stage "done".
     """
     sheet = _sheet(reference, plan)
+    if plan.sizes == "regions":
+        yield from _stages_by_region(sheet, plan, snapshots)
+        return
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
 
     def snapshot(
@@ -101,6 +107,31 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=lack)
 
 
+def _stages_by_region(sheet: Sheet, plan: Plan, snapshots: bool) -> Iterator[Progress]:
+    """Draw as the paper does: sizes follow from the regions, and stay with their dots."""
+
+    def snapshot(
+        stage: str, done: int, total: int, px: NDArray[np.float64], radii: NDArray[np.float64],
+        movement_mm: float = math.nan,
+    ) -> Progress:  # fmt: skip
+        n = len(px) if snapshots else 0
+        return Progress(stage, done, total, *sheet.on_page(px[:n], radii[:n]), movement_mm)
+
+    points, radii = np.empty((0, 2)), np.empty(0)
+    yield snapshot("first dots", 0, 1000, points, radii)
+    for share, first in pulses(sheet.density(), plan.growth, start=plan.start, seed=plan.seed):
+        radii, keep = sizes_by_region(first.region_px, sheet.rule)
+        points, radii = first.position_px[keep], radii[keep]
+        yield snapshot("first dots", round(1000 * share), 1000, points, radii)
+    if len(points) and plan.iterations:
+        for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
+            points = moved
+            yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
+    points = sheet.onto_ink(sheet.trim(points, None))
+    notes = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_dots).notes
+    yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=Shortfall(notes=notes))
+
+
 def notes_on(result: Progress) -> tuple[str, ...]:
     """Say in words what a finished run fell short of."""
     lack = result.shortfall
@@ -108,9 +139,13 @@ def notes_on(result: Progress) -> tuple[str, ...]:
         return ()
     notes = list(lack.notes)
     if lack.share > 0.0005:
+        where = ""
+        if lack.box_mm is not None:
+            x0, y0, x1, y1 = lack.box_mm
+            where = f", between {x0:.1f}, {y0:.1f} and {x1:.1f}, {y1:.1f} mm"
         notes.append(
             f"{100 * lack.share:.1f} % of the page is too dark for these dots "
-            f"(by {lack.missing:.2f} of 1); allow larger dots, or more of them"
+            f"(by {lack.missing:.2f} of 1{where}); allow larger dots, or more of them"
         )
     return tuple(notes)
 
@@ -122,6 +157,7 @@ def pulse_density(
     growth: str = "circular",
     start: str = "top",
     seed: int = 1,
+    area: Polygon | MultiPolygon | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Place first dots by pulse-density modulation, without relaxation.
 
@@ -133,6 +169,8 @@ def pulse_density(
     growth : {"circular", "triangular"}
     start : {"top", "border"}
     seed : int
+    area : polygon in pixels, optional
+        Only what lies inside gets dots.
 
     Returns
     -------
@@ -141,17 +179,46 @@ def pulse_density(
         By the rule for radius and density; not solved for the tone.
     """
     plan = Plan(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
-    sheet = _sheet(Reference(darkness, float(darkness.shape[1])), plan)
+    reference = Reference(darkness, float(darkness.shape[1]))
+    if area is not None:
+        return _pulses_inside(reference, plan, area)
+    sheet = _sheet(reference, plan)
     *_, (_, points) = _first_dots(sheet, plan)
     points = sheet.onto_ink(sheet.trim(points, None))
     return points * sheet.pixel_mm, sheet.radii(points) * sheet.pixel_mm
+
+
+def _pulses_inside(
+    reference: Reference, plan: Plan, area: Polygon | MultiPolygon
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Place the number of dots that the plan asks for in an area of the reference alone."""
+    check_area(area)
+    field = np.array(reference.darkness)
+    outside_area(field, area)
+    if not field.any():
+        return np.empty((0, 2)), np.empty(0)
+    sheet = _sheet(Reference(field, reference.width_mm), plan)  # so sized that n dots fill the area
+    whole = replace(_sheet(reference, plan), rule=sheet.rule)
+    inside = affinity.scale(area, 1 / whole.pixel_mm, 1 / whole.pixel_mm, origin=(0.0, 0.0))
+    *_, (_, first) = pulses(
+        whole.density(), plan.growth, start=plan.start, seed=plan.seed, inside=inside
+    )
+    points = first.position_px
+    return points * whole.pixel_mm, whole.radii(points) * whole.pixel_mm
 
 
 def _sheet(reference: Reference, plan: Plan) -> Sheet:
     n_dots = plan.n_dots
     if n_dots is None and plan.size_range_mm is None:
         n_dots = DEFAULT_DOTS
-    return Sheet.of(reference, n_dots, plan.size_range_mm, bleeds=plan.weighted)
+    by_region = plan.sizes == "regions"
+    return Sheet.of(
+        reference,
+        n_dots,
+        plan.size_range_mm,
+        bleeds=plan.weighted and not by_region,
+        faintest=DROPPED if by_region else None,
+    )
 
 
 def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.float64]]]:
@@ -187,7 +254,8 @@ def _relax(
 
     outline = sheet.outline_mm()
     corner = (float(outline[0, 0]), float(outline[0, 1]))
-    n_last = min(_LAST_STEPS, plan.iterations // 3) if plan.weighted and sheet.rule.varies else 0
+    solved = plan.weighted and plan.sizes == "tone" and sheet.rule.varies
+    n_last = min(_LAST_STEPS, plan.iterations // 3) if solved else 0
     for n_steps, last in ((plan.iterations - n_last, False), (n_last, True)):
         if not n_steps:
             continue

@@ -42,12 +42,15 @@ class Rule:
         Multiplies the radius that the rule would choose, before it is clamped to the range.
     thin : float
         Multiplies the density; below 1 where even the largest dots are too few.
+    even : bool
+        One radius for every darkness, the geometric middle of the range.
     """
 
     radius_min: float
     radius_max: float
     scale: float = 1.0
     thin: float = 1.0
+    even: bool = False
 
     BLEED_REACH: ClassVar[float] = 0.75
     """A dot beyond the page's edge is kept if it is nearer than this share of its radius."""
@@ -65,6 +68,9 @@ class Rule:
         range are kept free, so that solving the tone can still go either way.
         """
         low, high = self.radius_min, self.radius_max
+        if self.even:
+            middle = self.scale * math.sqrt(low * high)
+            return np.full(np.shape(darkness), min(max(middle, low), high))
         share = 0.06 + 0.88 * np.asarray(darkness, np.float64) ** 3
         radius: NDArray[np.float64] = np.clip(self.scale * (low + share * (high - low)), low, high)
         return radius
@@ -108,6 +114,8 @@ def rule_for(
     size_range: tuple[float, float] | None,
     border: NDArray[np.float32],
     ratio: float = 2.0,
+    *,
+    faintest: float | None = None,
 ) -> Rule:
     """Choose radii and density for a picture; lengths in pixels.
 
@@ -119,20 +127,25 @@ def rule_for(
         None: a range of 1:`ratio` that meets the tone with `n_dots`.
     border : (m,) float32
         Darkness of the pixels along the page's edge, if there is a bleed.
+    faintest : float, optional
+        Given for dots of one radius, of which those on lighter pixels than this are not counted.
     """
     levels, rim = _histogram(darkness), _histogram(border)
+    even = faintest is not None
+    if faintest is not None:
+        levels = levels[0] * (levels[1] >= faintest), levels[1]
     if size_range is not None:
-        rule = Rule(*size_range)
+        rule = Rule(*size_range, even=even)
         return rule if n_dots is None else _scaled(rule, levels, rim, n_dots)
     if n_dots is None:
         raise ParameterError("neither a number nor a size is given", "dots")
-    unit = Rule(1.0, ratio)
+    unit = Rule(1.0, ratio, even=even)
     area = float(levels[0] @ unit.density(levels[1]))
     length = float(rim[0] @ unit.per_border(rim[1]))
     if not area > 0:
         return unit
     low = (length + math.sqrt(length**2 + 4.0 * n_dots * area)) / (2.0 * n_dots)
-    return Rule(low, low * ratio)
+    return Rule(low, low * ratio, even=even)
 
 
 _Levels = tuple[NDArray[np.float64], NDArray[np.float64]]
