@@ -25,6 +25,7 @@ TOPICS = (
     "rendering",
     "editor",
     "brushes",
+    "view",
 )
 
 

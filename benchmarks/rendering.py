@@ -98,7 +98,7 @@ def _frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
     for kind in ("round", "smooth", "rough"):
         stage = _Stage(ctx, drawing(100_000, kind), WINDOW)
         wall = 1e3 * median_s(stage.frame, repeats, warm=2)
-        cpu = 1e3 * _cpu_s(stage.frame, repeats)
+        cpu = 1e3 * cpu_s(stage.frame, repeats)
         reach = 60.0 if kind == "round" else None
         note = f"{name}; {cpu:.0f} ms of CPU time"
         label = {"round": "round", "smooth": "elongated", "rough": "rough, elongated"}[kind]
@@ -111,7 +111,7 @@ def _frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
     return results
 
 
-def _cpu_s(call: Callable[[], None], repeats: int) -> float:
+def cpu_s(call: Callable[[], None], repeats: int) -> float:
     """Return the median CPU time of a call, of all cores: other programs change it little."""
     times = []
     for _ in range(repeats):

@@ -1,6 +1,7 @@
 """Make `docs/window.png`: the real window on a sample, under Xvfb.
 
 ``python docs/make_window.py [--size WxH] [--dots N] [OUT]``; needs Xvfb and xdotool.
+``--lens`` makes `docs/lens.png` instead: the canvas alone, zoomed in, with the reduction lens.
 """
 
 from __future__ import annotations
@@ -15,16 +16,20 @@ from pathlib import Path
 from PIL import ImageGrab
 
 ROOT = Path(__file__).resolve().parent.parent
+LENS_INPUT = ("click", "--repeat", "7", "--delay", "30", "4", "key", "z")
+CANVAS_LEFT, STATUS_HEIGHT = 342, 28
 EDITOR = "from stippler.cli import main; main()"
 
 
 def main() -> None:
     """Start a display, open the editor, wait until its work is over, take the picture."""
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("out", nargs="?", type=Path, default=ROOT / "docs" / "window.png")
+    options.add_argument("out", nargs="?", type=Path)
+    options.add_argument("--lens", action="store_true")
     options.add_argument("--size", default="1280x800")
     options.add_argument("--dots", default="60000")
     chosen = options.parse_args()
+    out = chosen.out or ROOT / "docs" / ("lens.png" if chosen.lens else "window.png")
     reads, writes = os.pipe()
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(writes), "-screen", "0", f"{chosen.size}x24"],
@@ -46,8 +51,14 @@ def main() -> None:
         width, height = (int(side) for side in chosen.size.split("x"))
         place = (str(width * 0.62), str(height * 0.47))
         subprocess.run(["xdotool", "mousemove", *place], env=env, check=True)
+        if chosen.lens:
+            subprocess.run(["xdotool", *LENS_INPUT], env=env, check=True)
+            wait_until_idle(editor.pid)
         time.sleep(1.0)
-        ImageGrab.grab(xdisplay=display).convert("RGB").save(chosen.out, optimize=True)
+        shot = ImageGrab.grab(xdisplay=display).convert("RGB")
+        if chosen.lens:
+            shot = shot.crop((CANVAS_LEFT, 0, width, height - STATUS_HEIGHT)).quantize(64)
+        shot.save(out, optimize=True)
     finally:
         editor.terminate()
         editor.wait()

@@ -52,9 +52,19 @@ class Camera:
     @classmethod
     def fit(cls, paper: Paper, size_px: Size, margin_px: float = 0.0) -> Camera:
         """Show the whole page, as large as it fits inside a margin."""
-        room = [max(size_px[i] - 2 * margin_px, 1.0) for i in (0, 1)]
-        scale = min(room[0] / paper.width_mm, room[1] / paper.height_mm)
-        return cls((paper.width_mm / 2, paper.height_mm / 2), _held(scale))
+        whole = cls((0.0, 0.0), 1.0)
+        return whole.fitted((0.0, 0.0), (paper.width_mm, paper.height_mm), size_px, margin_px)
+
+    def fitted(
+        self, low_mm: Point, high_mm: Point, size_px: Size, margin_px: float = 0.0
+    ) -> Camera:
+        """Show a rectangle of the page as large as it fits inside a margin, turned as before."""
+        width, height = high_mm[0] - low_mm[0], high_mm[1] - low_mm[1]
+        c, s = abs(math.cos(self.rotation_rad)), abs(math.sin(self.rotation_rad))
+        box = (c * width + s * height, s * width + c * height)
+        scale = min(max(size_px[i] - 2 * margin_px, 1.0) / max(box[i], 1e-9) for i in (0, 1))
+        center = ((low_mm[0] + high_mm[0]) / 2, (low_mm[1] + high_mm[1]) / 2)
+        return replace(self, center_mm=center, px_per_mm=_held(scale))
 
     def linear(self) -> NDArray[np.float64]:
         """Return the (2, 2) matrix that takes a page vector in mm to screen pixels."""

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -96,3 +97,27 @@ def test_zoom_has_limits():
     camera = Camera((0, 0), 1.0)
     assert camera.zoomed(1e30, (0, 0), SIZE).px_per_mm == MAX_PX_PER_MM
     assert camera.zoomed(1e-30, (0, 0), SIZE).px_per_mm == MIN_PX_PER_MM
+
+
+@given(cameras, points, points)
+def test_distances_on_the_screen_are_those_on_the_page_at_the_scale(camera, a, b):
+    there = camera.page_to_screen([a, b], SIZE)
+    expected = math.dist(a, b) * camera.px_per_mm
+    assert math.dist(*there) == pytest.approx(expected, rel=1e-9, abs=1e-6)
+
+
+@given(cameras)
+def test_a_mirror_turns_the_other_way_round(camera):
+    origin, along, across = camera.page_to_screen([(0, 0), (1, 0), (0, 1)], SIZE)
+    area = np.linalg.det([along - origin, across - origin])
+    assert (area < 0) == camera.flip
+
+
+@given(cameras, st.floats(0.01, 2000), st.floats(0.01, 2000), st.floats(0, 100))
+def test_a_box_is_fitted_as_it_is_turned(camera, width, height, margin):
+    low, high = (7.0, 3.0), (7.0 + width, 3.0 + height)
+    fitted = camera.fitted(low, high, SIZE, margin)
+    assert (fitted.rotation_rad, fitted.flip) == (camera.rotation_rad, camera.flip)
+    corners = fitted.page_to_screen([low, high, (low[0], high[1]), (high[0], low[1])], SIZE)
+    slack = np.concatenate([corners.min(axis=0), np.array(SIZE) - corners.max(axis=0)])
+    assert slack.min() == pytest.approx(margin, abs=1e-6)

@@ -21,12 +21,6 @@ JITTER_SHARE = 0.2
 _DUPLICATE_SHIFT_MM = 2.0
 
 
-def in_rectangle(editing: Editing, a: Point, b: Point) -> Ids:
-    """Return the ids of the dots in a rectangle between two corners."""
-    (x0, x1), (y0, y1) = sorted((a[0], b[0])), sorted((a[1], b[1]))
-    return np.asarray(editing.dots.id[editing.in_box((x0, y0, x1, y1))])
-
-
 def in_outline(editing: Editing, corners: Sequence[Point]) -> Ids:
     """Return the ids of the dots inside a closed line, which may cross itself."""
     if len(corners) < 3:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.errors import ParameterError
 
 
@@ -20,10 +21,14 @@ class Reference:
         0 (white, weight exactly 0) to 1 (black).
     width_mm : float
         Width of the field on the page.
+    adjustment : Adjustment
+        How the darkness was made from that of `picture`.
     """
 
     darkness: NDArray[np.float32]
     width_mm: float
+    adjustment: Adjustment = NEUTRAL
+    _picture: Reference | None = None
 
     def __post_init__(self) -> None:
         field = self.darkness
@@ -37,6 +42,20 @@ class Reference:
         fresh = np.ascontiguousarray(field, np.float32)
         fresh.flags.writeable = False
         object.__setattr__(self, "darkness", fresh)
+
+    @property
+    def picture(self) -> Reference:
+        """The reference as it is without any adjustment."""
+        return self._picture or self
+
+    def adjusted(self, adjustment: Adjustment) -> Reference:
+        """Return the picture with another adjustment; what was adjusted before does not add up."""
+        if adjustment == self.adjustment:
+            return self
+        picture = self.picture
+        if adjustment == picture.adjustment:
+            return picture
+        return Reference(adjustment.apply(picture.darkness), self.width_mm, adjustment, picture)
 
     @property
     def pixel_mm(self) -> float:

@@ -24,16 +24,24 @@ class InkTarget:
         self._framebuffer: moderngl.Framebuffer | None = None
 
     def begin(self, size_px: Size) -> Size:
-        """Clear the target for a frame of this size, put it in use, and return its own size."""
+        """Clear what a frame of this size needs, put it in use, and return its size."""
         whole = (size_px[0] + 2 * MARGIN_PX, size_px[1] + 2 * MARGIN_PX)
-        if self._framebuffer is None or self._framebuffer.size != whole:
-            self._release_target()
-            self._texture = self._ctx.texture(whole, 1, dtype="f4")
-            self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
-            self._framebuffer = self._ctx.framebuffer([self._texture])
-        set_target(self._ctx, self._framebuffer, whole)
-        self._framebuffer.clear()
+        framebuffer = self._sized(whole)
+        set_target(self._ctx, framebuffer, whole)
+        framebuffer.clear(viewport=(0, 0, *whole))
         return whole
+
+    def _sized(self, whole: Size) -> moderngl.Framebuffer:
+        """Return a framebuffer at least this large: a part of the page needs no other one."""
+        now = self._framebuffer
+        if now is not None and now.width >= whole[0] and now.height >= whole[1]:
+            return now
+        size = whole if now is None else (max(now.width, whole[0]), max(now.height, whole[1]))
+        self._release_target()
+        self._texture = self._ctx.texture(size, 1, dtype="f4")
+        self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
+        self._framebuffer = self._ctx.framebuffer([self._texture])
+        return self._framebuffer
 
     def lay(
         self,

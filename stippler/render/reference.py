@@ -5,6 +5,7 @@ from __future__ import annotations
 import moderngl
 
 from stippler.camera import Camera, Size
+from stippler.drawing.adjustment import Adjustment
 from stippler.drawing.reference import Reference
 from stippler.render.paper import Color, page_matrix
 from stippler.render.shaders import Program
@@ -48,12 +49,15 @@ class ReferencePass:
         self._texture = texture
         self._size_mm = (reference.width_mm, reference.height_mm)
 
-    def draw(self, camera: Camera, size_px: Size, opacity: float, ink: Color) -> None:
-        """Draw into the framebuffer in use."""
+    def draw(
+        self, camera: Camera, size_px: Size, opacity: float, ink: Color, adjustment: Adjustment
+    ) -> None:
+        """Draw into the framebuffer in use, as it looks when it is adjusted."""
         assert self._texture is not None
         set_state(self._ctx, "over")
         self._ctx.clear_samplers(0, 1)
         self._texture.use(0)
+        *curve, exponent = adjustment.curve
         self._program.set(
             {
                 "u_page_to_clip": page_matrix(camera, size_px),
@@ -63,6 +67,8 @@ class ReferencePass:
                 "u_px_per_mm": camera.px_per_mm,
                 "u_opacity": min(opacity, 1.0),
                 "u_ink_color": ink,
+                "u_curve": tuple(curve),
+                "u_exponent": exponent,
             }
         )
         self._vertices.render(moderngl.TRIANGLE_STRIP, vertices=4)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.camera import Camera, Point, Size
+from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.drawing.dots import Dots
 from stippler.drawing.pens import Preview
 from stippler.drawing.reference import Reference
@@ -35,6 +36,7 @@ class Renderer:
         self._ctx = ctx
         self._page_mm = (1.0, 1.0)
         self._opacity = 0.0
+        self._adjustment = NEUTRAL
         self._preview: Preview | None = None
         self._selected = np.zeros(0, np.bool_)
         self._paper = PaperPass(ctx)
@@ -58,10 +60,15 @@ class Renderer:
         """Set the size of the paper; call it before `set_dots`."""
         self._page_mm = (float(width_mm), float(height_mm))
 
-    def set_reference(self, reference: Reference | None, opacity: float = 0.25) -> None:
-        """Show a reference under the dots; cheap if it is the one already shown."""
+    def set_reference(
+        self,
+        reference: Reference | None,
+        opacity: float = 0.25,
+        adjustment: Adjustment = NEUTRAL,
+    ) -> None:
+        """Show a reference under the dots, adjusted; cheap if it is the one already shown."""
         self._reference.set(reference)
-        self._opacity = float(opacity)
+        self._opacity, self._adjustment = float(opacity), adjustment
 
     def set_dots(self, dots: Dots, selected: NDArray[np.bool_] | None = None) -> None:
         """Upload all dots, and which of them are selected."""
@@ -115,6 +122,7 @@ class Renderer:
         desk: Color = DESK,
         ink: Color = INK,
         marks: tuple[Color, Color] | None = (FIXED, SELECTED),
+        dots: bool = True,
     ) -> None:
         """Draw one frame.
 
@@ -126,20 +134,24 @@ class Renderer:
             0..1, encoded for display.
         marks : (colour, colour) or None
             Of fixed and of selected dots; None draws them like all others.
+        dots : bool
+            False leaves them out.
         """
-        self._dots.draw(camera, size_px, self._origin_mm, self._ink, self._preview)
+        if dots:
+            self._dots.draw(camera, size_px, self._origin_mm, self._ink, self._preview)
         target = framebuffer or self._ctx.screen
         set_target(self._ctx, target, size_px)
         target.clear(*desk, 1.0)
         # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
-        is_bare = not self._shows_reference and camera.rotation_rad == 0.0
+        is_bare = dots and not self._shows_reference and camera.rotation_rad == 0.0
         page_mm = self._page_mm
         if paper != desk:
             self._paper.draw(camera, size_px, page_mm, (paper, desk), edge_only=is_bare)
         if self._shows_reference:
-            self._reference.draw(camera, size_px, self._opacity, ink)
-        self._ink.lay(camera, size_px, page_mm, ink, paper if is_bare else None)
-        if marks:
+            self._reference.draw(camera, size_px, self._opacity, ink, self._adjustment)
+        if dots:
+            self._ink.lay(camera, size_px, page_mm, ink, paper if is_bare else None)
+        if dots and marks:
             self._dots.draw_marks(camera, size_px, self._origin_mm, self._preview, marks)
         if self._tip:
             self._overlay.draw(camera, size_px, *self._tip)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stippler.brushes.kinds import KINDS
 from stippler.ui.commands import CTRL, CTRL_SHIFT, Command, Commands, Key
+from stippler.ui.events import Mods
 from stippler.ui.layout import BRUSH
 from stippler.ui.session import Session
 from stippler.ui.window import Window
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
     from stippler.ui.editor import Editor
 
 EXPORT_DPI = 600.0
+TURN_RAD = math.radians(15.0)
+SHIFT = Mods(shift=True)
 
 
 def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
@@ -46,6 +50,9 @@ def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
 
     def show_reference() -> None:
         editor.look.reference_shown = not editor.look.reference_shown
+
+    def show_dots() -> None:
+        editor.look.dots_shown = not editor.look.dots_shown
 
     def print_size() -> None:
         editor.view.print_size(window.px_per_mm)
@@ -109,7 +116,40 @@ def commands_for(editor: Editor, session: Session, window: Window) -> Commands:
             Command("work.pause", "Pause or go on", hold, (Key("p"),)),
             Command("view.fit", "Fit", editor.view.fit, (Key("f"), Key("home"))),
             Command("view.print_size", "Print size", print_size, (Key("1"),)),
+            Command(
+                "view.selection",
+                "Zoom to the selection",
+                editor.show_selection,
+                (Key("f", SHIFT),),
+            ),
+            Command(
+                "view.turn_left",
+                "Turn left",
+                lambda: editor.view.turn(-TURN_RAD),
+                (Key(","), Key("comma")),
+            ),
+            Command(
+                "view.turn_right",
+                "Turn right",
+                lambda: editor.view.turn(TURN_RAD),
+                (Key("."), Key("period")),
+            ),
+            Command("view.flip", "Flip", editor.view.flip, (Key("y"), Key("\\"), Key("backslash"))),
+            Command("view.upright", "Upright", editor.view.upright, (Key("0"),)),
+            Command(
+                "view.reduce",
+                "Reduction lens",
+                lambda: editor.lens_key.switch("reduce"),
+                (Key("z"),),
+            ),
+            Command(
+                "view.magnify",
+                "Magnifying lens",
+                lambda: editor.lens_key.switch("magnify"),
+                (Key("q"),),
+            ),
             Command("view.reference", "Show or hide the picture", show_reference, (Key("r"),)),
+            Command("view.dots", "Show or hide the dots", show_dots, (Key("d"),)),
             Command("view.theme", "Light or dark", editor.look.turn_theme, (Key("t"),)),
         ]
     )

@@ -14,6 +14,8 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
+from stippler.drawing.adjustment import NEUTRAL
+from stippler.ui.lens import MARGIN, Glass
 from stippler.ui.look import Look
 from stippler.ui.session import Session
 from stippler.ui.tools.toolbox import Chosen
@@ -22,7 +24,10 @@ from stippler.ui.widgets import Rect
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Page
     from stippler.drawing.editing import Editing
+    from stippler.render.lens import LensPass
     from stippler.render.renderer import Renderer
+
+_RIM = 1.5  # the theme's pixels; each of the two lines of a lens's rim
 
 
 class Canvas:
@@ -30,8 +35,8 @@ class Canvas:
 
     Attributes
     ----------
-    n_drawn : int
-        How often the page has been drawn.
+    n_drawn, n_lens_drawn : int
+        How often the page has been drawn, and what the lens shows.
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -43,7 +48,10 @@ class Canvas:
         self._uploaded: object = None
         self._edited: Editing | None = None  # whose dots are on the GPU
         self._selected: NDArray[np.int64] = np.empty(0, np.int64)
-        self.n_drawn = 0
+        self._lens: LensPass | None = None  # with the first look through it
+        self._glass: Glass | None = None  # of this frame
+        self._lens_drawn: object = None
+        self.n_drawn = self.n_lens_drawn = 0
 
     def show(self, area: Rect, size_px: Size) -> None:
         """Put the picture behind all panels, at ImGui's coordinates."""
@@ -52,36 +60,96 @@ class Canvas:
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
 
+    def show_lens(self, area: Rect, glass: Glass, scale: float, ratio: float) -> None:
+        """Put a lens over the picture for this frame; `draw` fills it in.
+
+        Parameters
+        ----------
+        scale : float
+            ImGui's units for each of the theme's pixels.
+        ratio : float
+            Pixels of the canvas for each of ImGui's.
+        """
+        self._glass = glass
+        lens = self._lens_of(glass.diameter_px, scale * ratio)
+        low = [area[k] + (glass.corner_px[k] - lens.margin_px) / ratio for k in (0, 1)]
+        high = [low[k] + lens.texture.width / ratio for k in (0, 1)]
+        draw = imgui.get_background_draw_list()
+        draw.push_clip_rect(area[:2], area[2:], True)
+        texture = imgui.ImTextureRef(lens.texture.glo)
+        draw.add_image(texture, (low[0], low[1]), (high[0], high[1]), (0.0, 1.0), (1.0, 0.0))
+        draw.pop_clip_rect()
+
     def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
         size_px = self._texture.size
         content = _content(session, selection)
-        key = (camera, size_px, content, look.theme, look.reference_opacity)
-        if key == self._drawn:
-            return False
+        adjustment = session.adjustment if look.reference_opacity else NEUTRAL
+        shown = (content, look.theme, look.reference_opacity, adjustment, look.dots_shown)
+        is_new = (camera, size_px, shown) != self._drawn
+        if is_new:
+            self._draw_page(session, selection, camera, look)
+            self._drawn = (camera, size_px, shown)
+            self.n_drawn += 1
+        if self._glass is not None and session.drawing is not None:
+            self._draw_lens(self._glass, shown, look)
+        self._glass = None
+        return is_new
+
+    def _draw_page(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> None:
+        assert self._target is not None
+        assert self._texture is not None
         if session.drawing is None:
             self._target.use()
             self._target.clear(*look.theme.desk, 1.0)
-        else:
-            renderer = self._renderer()
-            self._upload(renderer, session, selection, session.drawing.page)
-            renderer.set_reference(
-                session.reference if look.reference_shown else None, look.reference_opacity
-            )
-            colours = look.theme
-            renderer.draw(
-                camera,
-                size_px,
-                self._target,
-                paper=colours.paper,
-                desk=colours.desk,
-                ink=colours.ink,
-            )
-        self._drawn = key
-        self.n_drawn += 1
-        return True
+            return
+        renderer, colours = self._renderer(), look.theme
+        self._upload(renderer, session, selection, session.drawing.page)
+        reference = session.reference if look.reference_shown else None
+        renderer.set_reference(
+            reference.picture if reference else None, look.reference_opacity, session.adjustment
+        )
+        renderer.draw(
+            camera,
+            self._texture.size,
+            self._target,
+            paper=colours.paper,
+            desk=colours.desk,
+            ink=colours.ink,
+            dots=look.dots_shown,
+        )
+
+    def _draw_lens(self, glass: Glass, shown: object, look: Look) -> None:
+        """Draw what the lens shows, if that is not what it showed the last time."""
+        assert self._lens is not None
+        key = (glass.camera, shown, self._lens)
+        if key == self._lens_drawn:
+            return
+        from stippler.render.lens import Colors
+
+        colours = look.theme
+        self._lens.draw(
+            self._renderer(),
+            glass.camera,
+            Colors(colours.paper, colours.desk, colours.ink),
+            dots=look.dots_shown,
+        )
+        self._lens_drawn = key
+        self.n_lens_drawn += 1
+
+    def _lens_of(self, diameter_px: int, scale: float) -> LensPass:
+        """Return the lens of a diameter; another size is another lens."""
+        from stippler.render.lens import LensPass
+
+        margin_px, rim_px = round(MARGIN * scale), max(_RIM * scale, 1.0)
+        size = (diameter_px, margin_px, rim_px)
+        if self._lens is None or self._lens.size != size:
+            if self._lens is not None:
+                self._lens.release()
+            self._lens = LensPass(self._ctx, *size)
+        return self._lens
 
     def _renderer(self) -> Renderer:
         """Return the renderer; it is imported late, for the sake of the first frame."""
@@ -139,6 +207,8 @@ class Canvas:
     def close(self) -> None:
         """Free every GL object."""
         self._free()
+        if self._lens is not None:
+            self._lens.release()
         if self._made is not None:
             self._made.release()
 

@@ -14,9 +14,10 @@ from stippler.ui.dialogs import Dialogs, has_native_dialogs
 from stippler.ui.events import Dropped, Event, KeyDown, Moved, Pressed, Released, Scrolled
 from stippler.ui.gui import Gui
 from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW, Layout
+from stippler.ui.lens import LensKey, place_lens
 from stippler.ui.look import Look
 from stippler.ui.messages import ERROR, WARNING
-from stippler.ui.overlay import draw_overlay
+from stippler.ui.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.painting import Painting
 from stippler.ui.panels.brush import draw_brush
 from stippler.ui.panels.dots import draw_dots
@@ -24,8 +25,9 @@ from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
+from stippler.ui.panels.reference import draw_reference
 from stippler.ui.panels.sight import draw_view
-from stippler.ui.panels.status import draw_status
+from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.tools import draw_tools
 from stippler.ui.pointer import Pointer
 from stippler.ui.rates import FrameRate
@@ -36,6 +38,7 @@ from stippler.ui.view import BLANK, View
 from stippler.ui.widgets import Rect, Widgets
 from stippler.ui.window import Window
 
+_CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
@@ -63,6 +66,7 @@ class Editor:
         self._window, self._clock = window, clock
         self.session = session
         self.look = Look()
+        self.look.begin()
         self.view = View(BLANK, window.size_px)
         self.pointer = Pointer(self.view)
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
@@ -71,6 +75,7 @@ class Editor:
         self.canvas = Canvas(window.ctx)
         self.painting = Painting(session)
         self.new_page = NewPage(session)
+        self.lens_key = LensKey(self.look)
         self.commands = commands_for(self, session, window)
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
@@ -135,6 +140,7 @@ class Editor:
             screen.use()
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
+        self.lens_key.note_frame(self._window.now_s)
         self._window.title = f"{self.session.name} – Stippler" if self.session.name else "Stippler"
 
     def _draw_ui(self, events: list[Event], dt_s: float) -> None:
@@ -146,8 +152,9 @@ class Editor:
         self.view.advance(dt_s)
         self.canvas.show(area, self.view.size_px)
         self._guarded("the brush's outline", lambda: self._draw_overlay(area))
-        if self.pointer.state.cursor == "hand" and not self.gui.wants_pointer:
-            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+        self._guarded("the lens", lambda: self._draw_lens(area))
+        if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
+            imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
         self._guarded("the tools", self._draw_tools)
         self._guarded("the panel", self._draw_panel)
         self._guarded("the brush's panel", self._draw_brush)
@@ -172,13 +179,24 @@ class Editor:
 
     def _draw_view(self) -> None:
         if imgui.begin(VIEW, None, imgui.WindowFlags_.no_collapse)[0]:
-            draw_view(self.widgets, self.look, self.commands)
+            draw_view(self.widgets, self.look, self.view, self.commands)
+            if self.session.reference is not None:
+                self.widgets.rule()
+                draw_reference(self.widgets, self.session, self.look, self.commands)
         imgui.end()
 
     def show_panel(self, name: str) -> None:
         """Bring a panel to the front."""
         self._panel_to_show = name
         self._schedule.note_input(self._clock())
+
+    def show_selection(self) -> None:
+        """Look at the chosen dots."""
+        box = self.painting.selected_box()
+        if box is None:
+            self.session.messages.say("no dots are selected", WARNING)
+        else:
+            self.view.show_box(*box)
 
     def _draw_tools(self) -> None:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)
@@ -196,9 +214,23 @@ class Editor:
     def _draw_overlay(self, area: Rect) -> None:
         draw_overlay(self.painting.toolbox, self.view, area, self._ratio, self.pointer.at_mm)
 
+    def _draw_lens(self, area: Rect) -> None:
+        at_px, brush = self.pointer.at_px, self.painting.toolbox.brush
+        if self.look.lens == "none" or at_px is None or self.session.drawing is None:
+            return
+        beside = brush is not None and brush.about.rhythm != "select"
+        reach_px = brush.radius_mm * self.view.camera.px_per_mm if brush and beside else None
+        diameter_px = self.look.lens_diameter * self.gui.scale * self._ratio
+        glass = place_lens(self.view, at_px, self.look.lens_factor, diameter_px, reach_px)
+        self.canvas.show_lens(area, glass, self.gui.scale, self._ratio)
+        if brush is not None and beside:
+            draw_tip_in_lens(brush, glass, self.pointer.at_mm, area, self._ratio)
+
     def _draw_status(self) -> None:
-        zoom = self.view.camera.px_per_mm / self._window.px_per_mm
-        draw_status(self.widgets, self.session, self.pointer.at_mm, zoom, self._rate)
+        camera = self.view.camera
+        zoom = camera.px_per_mm / self._window.px_per_mm
+        sight = Sight(camera, self.pointer.at_mm, zoom, self.look.dots_shown)
+        draw_status(self.widgets, self.session, sight, self._rate)
 
     def _place(self, area: Rect) -> None:
         """Tell view and pointer where the canvas is."""
@@ -210,7 +242,10 @@ class Editor:
 
     def _take(self, event: Event) -> None:
         """Bring one event to whom it concerns."""
+        self.lens_key.take(event)
         match event:
+            case Scrolled() if self.lens_key.is_held:
+                self.lens_key.strengthen(event.dy)
             case Dropped(paths=paths):
                 self._drop(paths)
             case KeyDown() if self.gui.wants_keys or self._asks:

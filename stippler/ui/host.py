@@ -74,9 +74,9 @@ class Host:
         imgui.backends.glfw_cursor_pos_callback(self._address, float(x), float(y))
         self._frame()
 
-    def press(self, button: str = "left") -> None:
+    def press(self, button: str = "left", *, shift: bool = False) -> None:
         """Press a mouse button."""
-        self._button(button, glfw.PRESS)
+        self._button(button, glfw.PRESS, glfw.MOD_SHIFT if shift else 0)
 
     def release(self, button: str = "left") -> None:
         """Let a mouse button come up."""
@@ -89,10 +89,17 @@ class Host:
         self.release()
         self.settle()
 
-    def drag(self, start: tuple[float, float], end: tuple[float, float], button: str) -> None:
+    def drag(
+        self,
+        start: tuple[float, float],
+        end: tuple[float, float],
+        button: str,
+        *,
+        shift: bool = False,
+    ) -> None:
         """Drag from one place to another."""
         self.move(*start)
-        self.press(button)
+        self.press(button, shift=shift)
         for share in (0.25, 0.5, 0.75, 1.0):
             self.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
         self.release(button)
@@ -104,19 +111,19 @@ class Host:
         imgui.backends.glfw_scroll_callback(self._address, 0.0, float(notches))
         self.settle()
 
-    def key(self, name: str, *, ctrl: bool = False) -> None:
+    def key(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Type a key."""
-        self.key_down(name, ctrl=ctrl)
-        self.key_up(name, ctrl=ctrl)
+        self.key_down(name, ctrl=ctrl, shift=shift)
+        self.key_up(name, ctrl=ctrl, shift=shift)
         self.settle()
 
-    def key_down(self, name: str, *, ctrl: bool = False) -> None:
+    def key_down(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Press a key and hold it."""
-        self._key(name, glfw.PRESS, ctrl)
+        self._key(name, glfw.PRESS, ctrl=ctrl, shift=shift)
 
-    def key_up(self, name: str, *, ctrl: bool = False) -> None:
+    def key_up(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
         """Let a key come up."""
-        self._key(name, glfw.RELEASE, ctrl)
+        self._key(name, glfw.RELEASE, ctrl=ctrl, shift=shift)
 
     def type(self, text: str) -> None:
         """Type text into the field that has the keyboard."""
@@ -162,12 +169,12 @@ class Host:
     def _frame(self) -> None:
         self._step(0.0)
 
-    def _button(self, button: str, action: int) -> None:
-        imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, 0)
+    def _button(self, button: str, action: int, mods: int = 0) -> None:
+        imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, mods)
         self._frame()
 
-    def _key(self, name: str, action: int, ctrl: bool) -> None:
+    def _key(self, name: str, action: int, *, ctrl: bool = False, shift: bool = False) -> None:
         code = getattr(glfw, f"KEY_{name.upper()}")
-        mods = glfw.MOD_CONTROL if ctrl else 0
+        mods = (glfw.MOD_CONTROL if ctrl else 0) | (glfw.MOD_SHIFT if shift else 0)
         imgui.backends.glfw_key_callback(self._address, code, 0, action, mods)
         self._frame()

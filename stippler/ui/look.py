@@ -6,24 +6,53 @@ from dataclasses import dataclass
 
 from stippler.ui.theme import DARK, LIGHT, Theme
 
+LENSES = ("none", "reduce", "magnify")
+STRENGTHS = (2, 4, 8)
+LENS_DIAMETERS = (100.0, 480.0)
+
 
 @dataclass(slots=True)
 class Look:
-    """Theme, and how the reference shows under the dots.
+    """Theme, how the reference shows under the dots, and the lens over the page.
 
     Attributes
     ----------
     opacity : float
         Of the reference, 0..1; it is not drawn where `reference_shown` is False.
+    lens : {"none", "reduce", "magnify"}
+    reduction, magnification : int
+        How many times smaller or larger than on the page the lens shows things.
+    lens_diameter : float
+        In the theme's pixels.
     """
 
     theme: Theme = LIGHT
+    dots_shown: bool = True
     reference_shown: bool = False
     opacity: float = 0.35
+    lens: str = "none"
+    reduction: int = 4
+    magnification: int = 4
+    lens_diameter: float = 240.0
+
+    def begin(self) -> None:
+        """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
+        self.dots_shown = True
+        self.lens = self.lens if self.lens in LENSES else "none"
+        for name in ("reduction", "magnification"):
+            kept = getattr(self, name)
+            setattr(self, name, min(STRENGTHS, key=lambda n: abs(n - kept)))
+        low, high = LENS_DIAMETERS
+        self.lens_diameter = min(max(low, self.lens_diameter), high)  # NaN ends at an end
 
     def turn_theme(self) -> None:
         """Change between light and dark."""
         self.theme = DARK if self.theme is LIGHT else LIGHT
+
+    @property
+    def lens_factor(self) -> float:
+        """Scale in the lens over scale on the page."""
+        return 1.0 / self.reduction if self.lens == "reduce" else float(self.magnification)
 
     @property
     def reference_opacity(self) -> float:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from stippler.brushes.brush import Brush
 from stippler.camera import Point
+from stippler.ui.lens import Glass
 from stippler.ui.tools.toolbox import Toolbox
 from stippler.ui.view import View
 from stippler.ui.widgets import Rect
@@ -35,19 +37,33 @@ def draw_overlay(
     brush = toolbox.brush
     if brush is not None and pointer_mm is not None and brush.about.rhythm != "select":
         outline = brush.tip.outline(brush.radius_mm, 64) + pointer_mm
-        _draw_line(draw, placed(outline), closed=True)
+        draw_outline(draw, placed(outline), closed=True)
         if brush.radius_mm * view.camera.px_per_mm < _LEAST_PX:
             ((x, y),) = placed([pointer_mm])
-            _draw_line(draw, [(x - 7, y), (x + 7, y)])
-            _draw_line(draw, [(x, y - 7), (x, y + 7)])
+            draw_outline(draw, [(x - 7, y), (x + 7, y)])
+            draw_outline(draw, [(x, y - 7), (x, y + 7)])
     if toolbox.outline:
-        _draw_line(draw, placed(toolbox.outline), closed=True)
+        draw_outline(draw, placed(toolbox.outline), closed=True)
     draw.pop_clip_rect()
 
 
-def _draw_line(
+def draw_tip_in_lens(
+    brush: Brush, glass: Glass, pointer_mm: Point | None, canvas: Rect, ratio: float
+) -> None:
+    """Draw a brush's outline at the scale of the lens, where it fits in."""
+    d = glass.diameter_px
+    if pointer_mm is None or not _LEAST_PX < brush.radius_mm * glass.camera.px_per_mm < 0.45 * d:
+        return
+    outline = brush.tip.outline(brush.radius_mm, 64) + pointer_mm
+    points = glass.camera.page_to_screen(outline, (d, d)) + glass.corner_px
+    placed = [(float(x) / ratio + canvas[0], float(y) / ratio + canvas[1]) for x, y in points]
+    draw_outline(imgui.get_background_draw_list(), placed, closed=True)
+
+
+def draw_outline(
     draw: imgui.ImDrawList, points: list[tuple[float, float]], *, closed: bool = False
 ) -> None:
+    """Draw a line, light and dark; in ImGui's coordinates."""
     if len(points) < 2:
         return
     flags = imgui.ImDrawFlags_.closed if closed else imgui.ImDrawFlags_.none

@@ -97,6 +97,18 @@ class Painting:
             return 0
         return int((self._editing.rows(self.toolbox.selection.ids) >= 0).sum())
 
+    def selected_box(self) -> tuple[Point, Point] | None:
+        """Return the corners of what encloses the chosen dots, in mm; None without any."""
+        if self._editing is None:
+            return None
+        rows = self._editing.rows(self.toolbox.selection.ids)
+        dots, rows = self._editing.dots, rows[rows >= 0]
+        if not len(rows):
+            return None
+        place, radius = dots.position_mm[rows], dots.radius_mm[rows, None]
+        low, high = (place - radius).min(axis=0), (place + radius).max(axis=0)
+        return (float(low[0]), float(low[1])), (float(high[0]), float(high[1]))
+
     def select_all(self) -> None:
         """Choose every dot."""
         if self._editing is not None and self._session.paintable:

@@ -15,7 +15,7 @@ from stippler.ui.events import (
     Released,
     Scrolled,
 )
-from stippler.ui.states import Change, Idle, Pan, State, Zoom, held
+from stippler.ui.states import Change, Idle, Pan, State, Turn, Zoom, held
 from stippler.ui.view import View
 
 _Placed = Moved | Pressed | Released | Scrolled
@@ -71,6 +71,8 @@ class Pointer:
                 self._view.pan((dx, dy))
             case Zoom(factor, x, y):
                 self._view.zoom(factor, (x, y))
+            case Turn(from_px, to_px):
+                self._view.drag_round(from_px, to_px)
 
     def local(self, event: _Placed) -> _Placed:
         """Return an event in the canvas's coordinates."""

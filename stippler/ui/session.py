@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
+from stippler.drawing.adjustment import NEUTRAL
 from stippler.errors import ParameterError
 from stippler.ui import work
 from stippler.ui.messages import ERROR, WARNING, Messages
@@ -53,6 +54,8 @@ class Session:
     ----------
     plan : Plan
         As the panels show it; `running_plan` is what the dots at hand were asked for with.
+    tone, width_mm, adjustment
+        Likewise: how the next start takes the picture.
     source : Source or None
         The picture that is open; one that could not be read never gets here.
     drawing : Drawing or None
@@ -81,6 +84,7 @@ class Session:
         self._make_ready = make_ready
         self.plan = plan
         self.tone, self.width_mm = tone, width_mm
+        self.adjustment = NEUTRAL
         self.running_plan: Plan | None = None
         self.source: Source | None = None
         self.drawing: Drawing | None = None
@@ -102,7 +106,9 @@ class Session:
 
     def open(self, path: Path) -> None:
         """Open a picture and begin to stipple it; a job that runs is superseded."""
-        self._begin(Source(path, self.tone, self.width_mm))
+        again = self.source is not None and self.source.path == path
+        adjustment = self.adjustment if again else NEUTRAL
+        self._begin(Source(path, self.tone, self.width_mm, adjustment))
 
     def start(self) -> None:
         """Stipple the open picture by the plan, from the beginning."""
@@ -110,7 +116,7 @@ class Session:
         if source is None:
             self.messages.say("open a picture first", WARNING)
             return
-        self._begin(replace(source, tone=self.tone, width_mm=self.width_mm))
+        self._begin(self._as_wanted(source))
 
     def new(self, page: Page) -> None:
         """Begin a drawing on an empty page."""
@@ -285,15 +291,17 @@ class Session:
         """Whether the dots at hand were made with other values than the panels show."""
         asked = self._asked if self._request is not None else self.source
         return asked is not None and (
-            (asked.tone, asked.width_mm) != (self.tone, self.width_mm)
-            or self.running_plan != self.plan
+            asked != self._as_wanted(asked) or self.running_plan != self.plan
         )
 
     # --- inside -----------------------------------------------------------------------------
 
+    def _as_wanted(self, source: Source) -> Source:
+        return replace(source, tone=self.tone, width_mm=self.width_mm, adjustment=self.adjustment)
+
     def _begin(self, source: Source) -> None:
         self._end_run()
-        known = self.reference if source == self.source else None
+        known = self.reference if source.is_read_as(self.source) else None
         plan, stipple = self.plan, self._stipple
         self._page, self._asked, self.running_plan = None, source, plan
         first = work.READ if known is None else "first dots"
@@ -328,7 +336,14 @@ class Session:
     def _adopt(self, reference: Reference) -> None:
         from stippler.drawing.drawing import Page
 
-        self._open_page(Page(reference.width_mm, reference.height_mm), reference)
+        assert self._asked is not None
+        if self.drawing is not None and self._asked.is_read_as(self.source):
+            self.drawing.reference = reference  # adjusted anew; page, dots and history stay
+            self.revision += 1
+        else:
+            self._open_page(Page(reference.width_mm, reference.height_mm), reference)
+            if self.source is None or self.source.path != self._asked.path:
+                self.adjustment = self._asked.adjustment
         self.source = self._asked
 
     def _open_page(self, page: Page, reference: Reference | None) -> None:

@@ -42,7 +42,15 @@ class Zoom:
     y_px: float
 
 
-Change = Pan | Zoom
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """Turn the page about the middle of the canvas, as a drag from one pixel to another does."""
+
+    from_px: tuple[float, float]
+    to_px: tuple[float, float]
+
+
+Change = Pan | Zoom | Turn
 
 
 class State(Protocol):
@@ -50,7 +58,7 @@ class State(Protocol):
 
     @property
     def cursor(self) -> str:
-        """Name of the pointer's shape: "arrow", "hand"."""
+        """Name of the pointer's shape: "arrow", "hand", "turn"."""
         ...
 
     def take(self, event: Event) -> tuple[State, list[Change]]:
@@ -65,10 +73,10 @@ class Idle:
     cursor: str = "arrow"
 
     def take(self, event: Event) -> tuple[State, list[Change]]:
-        """Begin to pan, or zoom."""
+        """Begin to pan or to turn, or zoom."""
         match event:
             case Pressed(button=button) if button == MIDDLE:
-                return Panning(MIDDLE, event.x_px, event.y_px, back=self), []
+                return _taken_hold(event, self), []
             case KeyDown(key="space"):
                 return Hand(), []
             case Scrolled():
@@ -86,7 +94,7 @@ class Hand:
         """Take hold of the page, zoom, or go back when space comes up."""
         match event:
             case Pressed(button=button) if button in (LEFT, MIDDLE):
-                return Panning(button, event.x_px, event.y_px, back=self), []
+                return _taken_hold(event, self), []
             case KeyUp(key="space") | FocusLost():
                 return Idle(), []
             case Scrolled():
@@ -121,6 +129,41 @@ class Panning:
             case Scrolled():
                 return self, _zoomed(event)
         return self, []
+
+
+@dataclass(frozen=True, slots=True)
+class Turning:
+    """The page turns with the pointer until the button comes up."""
+
+    button: str
+    at_px: tuple[float, float]
+    back: State
+    cursor: str = "turn"
+
+    def take(self, event: Event) -> tuple[State, list[Change]]:
+        """Follow the pointer; space coming up meanwhile is remembered."""
+        match event:
+            case Moved():
+                to = (event.x_px, event.y_px)
+                return Turning(self.button, to, self.back), [Turn(self.at_px, to)]
+            case Released(button=button) if button == self.button:
+                return self.back, []
+            case KeyUp(key="space"):
+                return Turning(self.button, self.at_px, Idle()), []
+            case KeyDown(key="space"):
+                return Turning(self.button, self.at_px, Hand()), []
+            case FocusLost():
+                return Idle(), []
+            case Scrolled():
+                return self, _zoomed(event)
+        return self, []
+
+
+def _taken_hold(event: Pressed, back: State) -> State:
+    """Return the state that holds the page: Shift turns it."""
+    if event.mods.shift:
+        return Turning(event.button, (event.x_px, event.y_px), back)
+    return Panning(event.button, event.x_px, event.y_px, back)
 
 
 def _zoomed(event: Scrolled) -> list[Change]:

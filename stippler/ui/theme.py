@@ -19,6 +19,7 @@ ICON_NEW, ICON_OPEN, ICON_SAVE, ICON_DICE = "\uf15b", "\uf07c", "\uf019", "\uf52
 ICON_PLAY, ICON_PAUSE, ICON_STOP = "\uf04b", "\uf04c", "\uf04d"
 ICON_FIT, ICON_PRINT, ICON_WARNING = "\uf31e", "\uf02f", "\uf071"
 ICON_LIGHT, ICON_DARK = "\uf185", "\uf186"
+ICON_LEFT, ICON_RIGHT = "\uf0e2", "\uf01e"
 _ICON_RANGE = (0xE000, 0xF8FF)
 
 Colour = tuple[float, float, float]
@@ -159,8 +160,8 @@ def _palette(theme: Theme) -> list[tuple[int, Colour, float]]:
         (col.frame_bg_active, theme.hovered, 1.0),
         (col.checkbox_selected_bg, theme.raised, 1.0),
         (col.check_mark, theme.accent, 1.0),
-        (col.slider_grab, theme.accent, 1.0),
-        (col.slider_grab_active, theme.accent, 0.8),
+        (col.slider_grab, theme.accent, 0.5),  # the value is read through it
+        (col.slider_grab_active, theme.accent, 0.65),
         (col.button, theme.raised, 1.0),
         (col.button_hovered, theme.hovered, 1.0),
         (col.button_active, theme.line, 1.0),

@@ -12,6 +12,8 @@ MAX_PX_PER_MM = 2_000.0
 SMALLEST_OF_FIT = 0.1  # zooming out ends where the page is a tenth of the fitted one
 _SETTLE_S = 0.06  # in this time a smooth zoom covers 63 % of what is left
 _CLOSE_ENOUGH = 0.002  # of the logarithm of the scale
+_EXACT_DEG = 1e-9
+_AXLE_PX = 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +43,8 @@ class View:
         self._to_go = 0.0  # logarithm of the zoom that is still to come
         self._at_px: Point = (0.0, 0.0)
         self.following = True
-        self.camera = self._fitted()
+        self.camera = Camera((0.0, 0.0), 1.0)
+        self.fit()
 
     @property
     def size_px(self) -> Size:
@@ -69,10 +72,18 @@ class View:
                 self.fit()
 
     def fit(self) -> None:
-        """Show the whole page, upright as it is turned now."""
+        """Show the whole page, turned as it is."""
         self.following, self._to_go = True, 0.0
-        turned = (self.camera.rotation_rad, self.camera.flip)
-        self.camera = replace(self._fitted(), rotation_rad=turned[0], flip=turned[1])
+        self.camera = self._fitted()
+
+    def show_box(self, low_mm: Point, high_mm: Point) -> None:
+        """Show a rectangle of the page as large as it fits."""
+        self.following, self._to_go = False, 0.0
+        margin = MARGIN * min(self._size_px)
+        camera = self.camera.fitted(low_mm, high_mm, self._size_px, margin)
+        low, high = self._limits()
+        self.camera = replace(camera, px_per_mm=min(max(camera.px_per_mm, low), high))
+        self._hold()
 
     def print_size(self, px_per_mm: float) -> None:
         """Show the page as large as it will be printed, about the middle of the canvas."""
@@ -85,6 +96,36 @@ class View:
         self.following = False
         self.camera = self.camera.panned(delta_px)
         self._hold()
+
+    def turn(self, by_rad: float) -> None:
+        """Turn the page on the screen, clockwise, about the middle of the canvas."""
+        self.turn_to(self.camera.rotation_rad + by_rad)
+
+    def turn_to(self, angle_rad: float) -> None:
+        """Turn the page so far from upright; whole degrees are met exactly."""
+        if not math.isfinite(angle_rad):
+            return
+        angle = math.remainder(angle_rad, math.tau)
+        degrees = math.degrees(angle)
+        if abs(degrees - round(degrees)) < _EXACT_DEG:
+            angle = math.radians(round(degrees))
+        self.camera = replace(self.camera, rotation_rad=angle)
+
+    def drag_round(self, from_px: Point, to_px: Point) -> None:
+        """Turn the page as a pointer drags it round the middle of the canvas."""
+        middle = (self._size_px[0] / 2, self._size_px[1] / 2)
+        a, b = ((at[0] - middle[0], at[1] - middle[1]) for at in (from_px, to_px))
+        if min(math.hypot(*a), math.hypot(*b)) >= _AXLE_PX:  # nearer, a pixel is a leap
+            self.turn(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]))
+
+    def flip(self) -> None:
+        """Mirror what is seen, left to right, about the middle of the canvas."""
+        middle = (self._size_px[0] / 2, self._size_px[1] / 2)
+        self.camera = self.camera.flipped(middle, self._size_px)
+
+    def upright(self) -> None:
+        """Neither turned nor mirrored; the middle of the canvas stays."""
+        self.camera = replace(self.camera, rotation_rad=0.0, flip=False)
 
     def zoom(self, factor: float, at_px: Point) -> None:
         """Ask for a larger or smaller page; it gets there over the next frames."""
@@ -115,7 +156,9 @@ class View:
         return float(x), float(y)
 
     def _fitted(self) -> Camera:
-        return Camera.fit(self._paper, self._size_px, MARGIN * min(self._size_px))
+        page = (self._paper.width_mm, self._paper.height_mm)
+        margin = MARGIN * min(self._size_px)
+        return self.camera.fitted((0.0, 0.0), page, self._size_px, margin)
 
     def _limits(self) -> tuple[float, float]:
         fitted = self._fitted().px_per_mm

@@ -97,6 +97,12 @@ class Widgets:
         self.tip(tip)
         return pressed
 
+    def heading_button(self, name: str, icon: str, tip: str) -> bool:
+        """Draw a square button at the right end of a heading."""
+        imgui.same_line(imgui.get_content_region_avail().x - imgui.get_frame_height() + self.margin)
+        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 5.0 * self.scale)
+        return self.icon_button(name, icon, tip)
+
     # --- controls ---------------------------------------------------------------------------
 
     def button(
@@ -156,9 +162,13 @@ class Widgets:
         self.tip(tip)
         return typed if done else value
 
-    def length(self, label: str, value: float, tip: str, unit: str = "mm") -> float:
+    def length(
+        self, label: str, value: float, tip: str, unit: str = "mm", *, spare: float = 0.0
+    ) -> float:
         """Take a number with a unit; it counts when Enter is pressed or the field is left."""
         self.label(label)
+        if spare:
+            imgui.set_next_item_width(-spare)
         _, typed = imgui.input_float(f"##{label}", value, 0.0, 0.0, f"%.4g {unit}", _MARK_ALL)
         done = imgui.is_item_deactivated_after_edit()
         self.note(label)
@@ -176,12 +186,19 @@ class Widgets:
         return percent / 100
 
     def slider(
-        self, label: str, value: float, low: float, high: float, tip: str, form: str = "%.0f"
+        self,
+        label: str,
+        value: float,
+        low: float,
+        high: float,
+        tip: str,
+        form: str = "%.0f",
+        flags: int = 0,
     ) -> float:
         """Take a number by dragging; Ctrl and a click types it."""
         self.label(label)
         _, value = imgui.slider_float(
-            f"##{label}", value, low, high, form, imgui.SliderFlags_.always_clamp
+            f"##{label}", value, low, high, form, imgui.SliderFlags_.always_clamp | flags
         )
         self.note(label)
         self.tip(tip)

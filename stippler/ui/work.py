@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.errors import StipplerError
 
 if TYPE_CHECKING:
@@ -37,6 +38,11 @@ class Source:
     path: Path
     tone: str
     width_mm: float
+    adjustment: Adjustment = NEUTRAL
+
+    def is_read_as(self, other: Source | None) -> bool:
+        """Whether both come from the file alike, however they are adjusted then."""
+        return other is not None and replace(self, adjustment=other.adjustment) == other
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +84,8 @@ def stipple_picture(
         from stippler.files.picture import read_picture
 
         reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
-        yield Work(READ, 1, 1, reference)
+        yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
+    reference = reference.adjusted(source.adjustment)
     if not is_warm():
         for n_ready, n_kernels in _prepared_kernels():
             yield Work(PREPARE, n_ready, n_kernels, reference)

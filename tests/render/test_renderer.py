@@ -317,3 +317,25 @@ def test_a_window_may_change_its_size(page, ink, many):
     first = ink(FIT, SIZE)
     ink(FIT, (333, 111))
     assert (ink(FIT, SIZE) == first).all()
+
+
+@pytest.mark.parametrize("kind", ["round", "rough"])
+def test_a_flipped_or_turned_page_is_the_picture_flipped_or_turned(page, ink, many, kind):
+    page.set_dots(many(kind=kind))
+    upright = ink(Camera((20, 15), 9.0), (200, 200))
+    flipped = ink(Camera((20, 15), 9.0, flip=True), (200, 200))
+    np.testing.assert_allclose(flipped, upright[:, ::-1], atol=2 / 255)
+    turned = ink(Camera((20, 15), 9.0, math.pi / 2), (200, 200))
+    np.testing.assert_allclose(turned, np.rot90(upright, -1), atol=2 / 255)
+
+
+def test_dots_can_be_left_out(page, canvas, many):
+    dots = many()
+    dots.fixed[:] = True
+    page.set_dots(dots)
+    page.set_reference(Reference(np.full((3, 4), 0.4, np.float32), 40.0), 1.0)
+    target = canvas(SIZE)
+    page.draw(FIT, SIZE, target.framebuffer, paper=WHITE, desk=BLACK, ink=BLACK)
+    assert np.ptp(target.pixels()[5:-5, 5:-5]) > 100
+    page.draw(FIT, SIZE, target.framebuffer, paper=WHITE, desk=BLACK, ink=BLACK, dots=False)
+    assert (target.pixels()[5:-5, 5:-5] == 153).all()

@@ -28,7 +28,7 @@ from stippler.ui.events import (
 from stippler.ui.messages import ERROR, INFO, Messages
 from stippler.ui.pointer import Pointer
 from stippler.ui.schedule import Schedule
-from stippler.ui.states import Change, Hand, Idle, Pan, Panning, State, Zoom
+from stippler.ui.states import Change, Hand, Idle, Pan, Panning, State, Turn, Turning, Zoom
 from stippler.ui.view import View
 
 PAGE = Page(100.0, 50.0)
@@ -71,6 +71,32 @@ def test_space_that_comes_up_first_does_not_let_go_of_the_page() -> None:
     assert isinstance(state, Idle)
 
 
+SHIFT = Mods(shift=True)
+
+
+def test_shift_turns_where_a_drag_would_pan() -> None:
+    state, changes = run(
+        Idle(),
+        Pressed(MIDDLE, 10, 10, mods=SHIFT),
+        Moved(15, 12),
+        Moved(20, 9),
+        Released(MIDDLE, 20, 9),
+    )
+    assert isinstance(state, Idle)
+    assert changes == [Turn((10, 10), (15, 12)), Turn((15, 12), (20, 9))]
+    state, changes = run(
+        Idle(),
+        KeyDown("space", SHIFT),
+        Pressed(LEFT, 0, 0, mods=SHIFT),
+        KeyUp("space"),
+        Moved(7, 0),
+    )
+    assert isinstance(state, Turning)
+    assert changes == [Turn((0, 0), (7, 0))]
+    assert run(state, FocusLost())[0] == Idle()
+    assert run(state, Released(LEFT, 7, 0))[0] == Idle()  # space has come up meanwhile
+
+
 @pytest.mark.parametrize("button", [LEFT, RIGHT])
 def test_other_buttons_do_nothing_yet(button: str) -> None:
     assert run(Idle(), Pressed(button, 0, 0), Moved(9, 9), Released(button, 9, 9)) == (Idle(), [])
@@ -100,7 +126,11 @@ def test_the_wheel_zooms_where_the_pointer_is() -> None:
 _EVENTS = st.one_of(
     st.builds(Moved, st.floats(-50, 900), st.floats(-50, 700)),
     st.builds(
-        Pressed, st.sampled_from([LEFT, MIDDLE, RIGHT]), st.floats(0, 800), st.floats(0, 600)
+        Pressed,
+        st.sampled_from([LEFT, MIDDLE, RIGHT]),
+        st.floats(0, 800),
+        st.floats(0, 600),
+        mods=st.sampled_from([Mods(), Mods(shift=True)]),
     ),
     st.builds(
         Released, st.sampled_from([LEFT, MIDDLE, RIGHT]), st.floats(0, 800), st.floats(0, 600)
@@ -124,6 +154,7 @@ def test_any_input_leaves_a_sane_view_and_nothing_held(events: list[tuple[Event,
         assert 0 <= camera.center_mm[1] <= PAGE.height_mm
         assert math.isfinite(camera.px_per_mm)
         assert camera.px_per_mm > 0
+        assert abs(camera.rotation_rad) <= math.pi
     for event in (Released(LEFT, 0, 0), Released(MIDDLE, 0, 0), KeyUp("space")):
         pointer.take(event, elsewhere=True)
     assert pointer.state == Idle()
@@ -159,6 +190,69 @@ def test_the_pointer_knows_its_place_on_the_page() -> None:
 
 
 # --- view ----------------------------------------------------------------------------------
+
+
+def test_a_drag_round_the_middle_takes_the_page_along() -> None:
+    view = View(PAGE, SIZE)
+    view.pan((30, -40))
+    held = view.at(650, 300)
+    pointer = Pointer(view)
+    pointer.take(Pressed(MIDDLE, 650, 300, mods=SHIFT), elsewhere=False)
+    for angle in (0.2, 0.9, 1.4, 3.0, -2.5):
+        at = (400 + 250 * math.cos(angle), 300 + 250 * math.sin(angle))
+        pointer.take(Moved(*at), elsewhere=False)
+        assert view.camera.page_to_screen(held, SIZE) == pytest.approx(at)
+    turned = view.camera
+    pointer.take(Moved(401, 300), elsewhere=False)  # on the axle a pixel would be a leap
+    assert view.camera == turned
+
+
+@given(st.lists(st.sampled_from([-15.0, 15.0, 90.0, 7.5, 180.0, math.nan]), max_size=60))
+def test_turns_add_up_without_drift_and_keep_the_middle(turns: list[float]) -> None:
+    view = View(PAGE, SIZE)
+    view.pan((31, 17))
+    before, total = view.camera, 0.0
+    for degrees in turns:
+        view.turn(math.radians(degrees))
+        total += degrees if math.isfinite(degrees) else 0.0
+    assert view.camera.center_mm == before.center_mm
+    assert view.camera.px_per_mm == before.px_per_mm
+    assert math.remainder(math.degrees(view.camera.rotation_rad) - total, 360) == pytest.approx(
+        0, abs=1e-9
+    )
+    view.turn_to(0.0)
+    assert view.camera == before
+
+
+def test_a_flip_mirrors_what_is_seen_and_upright_undoes_it() -> None:
+    view = View(PAGE, SIZE)
+    view.turn(0.4)
+    place = view.camera.page_to_screen((20, 10), SIZE)
+    view.flip()
+    mirrored = view.camera.page_to_screen((20, 10), SIZE)
+    assert mirrored == pytest.approx((800 - place[0], place[1]))
+    view.upright()
+    assert view.camera == View(PAGE, SIZE).camera
+
+
+@given(st.floats(-4, 4), st.booleans())
+def test_fit_and_zoom_respect_the_turn(angle: float, flip: bool) -> None:
+    view = View(PAGE, SIZE)
+    view.turn_to(angle)
+    if flip:
+        view.flip()
+    view.fit()
+    corners = view.camera.page_to_screen([(0, 0), (100, 0), (100, 50), (0, 50)], SIZE)
+    assert corners.min() >= 0
+    assert (corners <= SIZE).all()
+    place = view.at(250, 330)
+    view.zoom(3.0, (250, 330))
+    while view.moving:
+        view.advance(0.05)
+    assert view.at(250, 330) == pytest.approx(place, abs=1e-6)
+    view.show_box((10, 10), (12, 11))
+    assert view.at(400, 300) == pytest.approx((11, 10.5))
+    assert view.camera.px_per_mm > 100
 
 
 @given(

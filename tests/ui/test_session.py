@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.drawing.reference import Reference
 from stippler.errors import PictureError
 from stippler.jobs.worker import Update
@@ -124,6 +125,45 @@ def test_a_picture_is_opened_stippled_and_becomes_a_drawing(stage: Stage) -> Non
     stage.tell(Work("done", 1, 1, picture, dots(7, "done")), "finished")
     assert (session.phase, session.busy, len(session.drawing.dots)) == ("done", False, 7)
     assert session.messages.log[-1].text == "7 dots drawn"
+
+
+def test_an_adjusted_picture_makes_new_dots_as_a_step_that_can_be_undone(stage: Stage) -> None:
+    session = stage.session
+    picture = opened(stage, 5)
+    editing, lighter = session.editing, Adjustment(brightness=0.2)
+    assert not session.outdated
+    session.adjustment = lighter
+    assert session.outdated
+    session.start()
+    source, _, known = stage.last_job()
+    assert source == Source(Path("shell.png"), "linear", 100.0, lighter)
+    assert known is picture  # not read again
+    adjusted = picture.adjusted(lighter)
+    stage.tell(Work("done", 1, 1, adjusted, dots(7, "done")), "finished")
+    assert session.editing is editing
+    assert session.reference is adjusted
+    assert editing is not None
+    assert editing.drawing.reference is adjusted  # as brushes see it
+    assert not session.outdated
+    assert session.n_dots == 7
+    session.undo()
+    assert session.n_dots == 5
+
+
+def test_adjustments_belong_to_their_picture(stage: Stage) -> None:
+    session = stage.session
+    opened(stage)
+    session.adjustment = Adjustment(invert=True)
+    session.open(Path("missing.png"))
+    assert stage.last_job()[0].adjustment == NEUTRAL
+    failure = PictureError("no such file", "missing.png")
+    stage.tell(None, "failed", failure=failure)
+    assert session.adjustment.invert
+    session.open(Path("shell.png"))
+    assert stage.last_job()[0].adjustment.invert
+    session.open(Path("other.png"))
+    stage.tell(Work("read", 1, 1, reference(50.0)))
+    assert session.adjustment == NEUTRAL
 
 
 def test_results_of_an_old_request_change_nothing(stage: Stage) -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from stippler.drawing.adjustment import Adjustment
 from stippler.errors import PictureError, StipplerError
 from stippler.stippling.plan import Plan
 from stippler.ui import work
@@ -44,6 +46,29 @@ def test_stages_come_in_order_and_the_picture_is_read_once(picture: Path) -> Non
     assert again[-1].progress is not None
     assert steps[-1].progress is not None
     assert (again[-1].progress.position_mm == steps[-1].progress.position_mm).all()
+
+
+def test_adjustments_change_the_dots_and_not_the_picture(picture: Path) -> None:
+    plain = Source(picture, "linear", 60.0)
+    lighter = replace(plain, adjustment=Adjustment(brightness=0.4))
+    first = list(stipple_picture(plain, PLAN, None, is_warm=lambda: True))[-1]
+    known = first.reference
+    assert known is not None
+    picture.touch()
+    again = list(stipple_picture(lighter, PLAN, known, is_warm=lambda: True))
+    assert again[0].stage == "first dots"  # not read again
+    last = again[-1]
+    assert last.reference is not None
+    assert last.reference.picture is known
+    assert last.progress is not None
+    assert first.progress is not None
+    ink = [float((work.progress.radius_mm**2).sum()) for work in (first, last) if work.progress]
+    share = known.adjusted(lighter.adjustment).darkness.mean() / known.darkness.mean()
+    assert ink[1] / ink[0] == pytest.approx(share, abs=0.05)
+    back = list(stipple_picture(plain, PLAN, last.reference, is_warm=lambda: True))[-1]
+    assert back.reference is known
+    assert back.progress is not None
+    assert (back.progress.position_mm == first.progress.position_mm).all()
 
 
 def test_a_missing_picture_fails_before_anything_is_compiled(tmp_path: Path) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 from imgui_bundle import imgui
 
-from stippler.camera import Point
+from stippler.camera import Camera, Point
 from stippler.ui.messages import INFO
 from stippler.ui.rates import FrameRate
 from stippler.ui.session import Session
@@ -12,9 +15,26 @@ from stippler.ui.theme import SMALL_PX, STATUS_HEIGHT
 from stippler.ui.widgets import Widgets
 
 
-def draw_status(
-    widgets: Widgets, session: Session, pointer_mm: Point | None, zoom: float, frames: FrameRate
-) -> None:
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """How the page is seen.
+
+    Attributes
+    ----------
+    pointer_mm : (x, y) or None
+        On the page; None while the pointer is elsewhere.
+    zoom : float
+        Size on the screen over size on paper.
+    dots_shown : bool
+    """
+
+    camera: Camera
+    pointer_mm: Point | None
+    zoom: float
+    dots_shown: bool
+
+
+def draw_status(widgets: Widgets, session: Session, sight: Sight, frames: FrameRate) -> None:
     """Draw the bar along the lower edge of the window."""
     viewport = imgui.get_main_viewport()
     height = STATUS_HEIGHT * widgets.scale
@@ -39,7 +59,7 @@ def draw_status(
     message = session.messages.current
     said = message is not None and message.level == INFO
     imgui.text_unformatted(message.text if message and said else _summary(session))
-    _draw_fields(widgets, _fields(session, pointer_mm, zoom, frames))
+    _draw_fields(widgets, _fields(session, sight, frames))
     imgui.pop_font()
     imgui.end()
     imgui.pop_style_var(3)
@@ -51,20 +71,32 @@ def _summary(session: Session) -> str:
     return session.name
 
 
-def _fields(
-    session: Session, pointer_mm: Point | None, zoom: float, frames: FrameRate
-) -> list[tuple[str, float, str]]:
+def _fields(session: Session, sight: Sight, frames: FrameRate) -> list[tuple[str, float, str]]:
     """Return text, width of its column and explanation, from the left."""
-    place = f"{pointer_mm[0]:.1f}, {pointer_mm[1]:.1f} mm" if pointer_mm else "–"
+    at = sight.pointer_mm
+    place = f"{at[0]:.1f}, {at[1]:.1f} mm" if at else "–"
+    dots = f"{session.n_dots:,} dots" + ("" if sight.dots_shown else ", hidden")
     steps = f"{session.steps_per_s:.0f} steps/s" if session.steps_per_s else "–"
     rate = f"{frames.per_s:.0f} frames/s" if frames.per_s else "–"
+    turned = _turned(sight.camera)
     return [
+        *([(turned, 112, "How the page lies on the screen.")] if turned else []),
         (place, 118, "Position of the pointer on the page, in mm from its top left corner."),
-        (f"{session.n_dots:,} dots", 96, "Dots in the drawing."),
-        (f"{zoom:.0%}", 60, "Size on the screen; 100 % is the size on paper."),
+        (dots, 96 if sight.dots_shown else 146, "Dots in the drawing."),
+        (_zoom(sight.zoom), 60, "Size on the screen; 1:1 is the size on paper."),
         (rate, 84, "Frames drawn a second; none are drawn while nothing changes."),
         (steps, 84, "Relaxation steps a second, in the last work."),
     ]
+
+
+def _turned(camera: Camera) -> str:
+    degrees = round(math.degrees(camera.rotation_rad), 1)
+    turned = [f"turned {degrees:g}°".replace("-", "−")] if degrees else []
+    return ", ".join(turned + ["flipped"] * camera.flip)
+
+
+def _zoom(zoom: float) -> str:
+    return "1:1" if abs(zoom - 1.0) < 5e-4 else f"{zoom:.0%}"
 
 
 def _draw_fields(widgets: Widgets, fields: list[tuple[str, float, str]]) -> None:

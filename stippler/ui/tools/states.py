@@ -143,7 +143,7 @@ def _begun_selection(event: Pressed, desk: Desk) -> ToolState:
         return Rest()
     if how == "polygon":
         return Cornering([at], event.mods, at, event.t_s)
-    return Outlining(how, [at], event.mods)
+    return Outlining(how, [at], event.mods, (event.x_px, event.y_px))
 
 
 def _on_selected(at: Point, desk: Desk) -> bool:
@@ -232,21 +232,18 @@ def _line(event: Released, desk: Desk) -> ToolState:
 
 @dataclass(slots=True)
 class Outlining:
-    """A rectangle or a lasso is dragged."""
+    """A rectangle or a lasso is dragged; the rectangle is upright on the screen."""
 
     how: str
     points: list[Point]
     mods: Mods
+    start_px: Point
 
     def take(self, event: Event, desk: Desk) -> ToolState:
         """Follow the pointer; choose when the button comes up."""
         match event:
             case Moved() | Released():
-                at = desk.page(event.x_px, event.y_px)
-                if self.how == "rectangle":
-                    self.points = [self.points[0], at]
-                elif at != self.points[-1]:
-                    self.points.append(at)
+                self._follow(event, desk)
                 if isinstance(event, Released) and event.button == LEFT:
                     self._choose(desk)
                     return Rest()
@@ -254,22 +251,22 @@ class Outlining:
                 return Rest()
         return self
 
-    def _choose(self, desk: Desk) -> None:
-        from stippler.brushes.selection import in_outline, in_rectangle
-
+    def _follow(self, event: Moved | Released, desk: Desk) -> None:
+        (x0, y0), (x1, y1) = self.start_px, (event.x_px, event.y_px)
         if self.how == "rectangle":
-            a, b = self.points[0], self.points[-1]
-            desk.selection.choose(in_rectangle(desk.editing, a, b), self.mods)
-        else:
-            desk.selection.choose(in_outline(desk.editing, self.points), self.mods)
+            self.points = [desk.page(*at) for at in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+        elif (at := desk.page(x1, y1)) != self.points[-1]:
+            self.points.append(at)
+
+    def _choose(self, desk: Desk) -> None:
+        from stippler.brushes.selection import in_outline
+
+        desk.selection.choose(in_outline(desk.editing, self.points), self.mods)
 
     @property
     def outline(self) -> list[Point]:
         """What is to be shown, in mm."""
-        if self.how != "rectangle":
-            return self.points
-        (x0, y0), (x1, y1) = self.points[0], self.points[-1]
-        return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        return self.points
 
     def cancel(self, desk: Desk) -> None:
         """Nothing has been chosen."""

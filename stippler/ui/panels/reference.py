@@ -1,0 +1,79 @@
+"""The reference: how it shows under the dots, and how it is adjusted before dots are made."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from stippler.drawing.adjustment import GAMMA_RANGE, MAX_BRIGHTNESS, NEUTRAL, Adjustment
+from stippler.ui.commands import Commands
+from stippler.ui.look import Look
+from stippler.ui.session import Session
+from stippler.ui.widgets import Widgets
+
+
+def draw_reference(widgets: Widgets, session: Session, look: Look, commands: Commands) -> None:
+    """Draw the section."""
+    widgets.heading("Picture")
+    look.reference_shown = widgets.check(
+        "Show picture", look.reference_shown, f"{commands['view.reference'].hint}."
+    )
+    if look.reference_shown:
+        imgui.same_line(0.0, widgets.gap)
+        look.opacity = widgets.share("Opacity", look.opacity, "Of the picture under the dots.")
+    look.dots_shown = widgets.check("Show dots", look.dots_shown, f"{commands['view.dots'].hint}.")
+    before = session.adjustment
+    session.adjustment = _draw_adjustment(widgets, before)
+    if session.adjustment != before:
+        look.reference_shown = True  # else nothing would be seen to change
+    reference = session.reference
+    assert reference is not None
+    if session.adjustment != reference.adjustment:
+        if widgets.button(
+            "Use for the dots",
+            f"{commands['work.start'].hint}: makes the dots anew, from the adjusted picture. "
+            "Brushes go by it from then on.",
+            width=-1.0,
+            primary=True,
+            enabled=session.source is not None,
+        ):
+            look.dots_shown = True
+            commands["work.start"].run()
+    else:
+        widgets.caption("New dots come from the picture as it is adjusted here.")
+
+
+def _draw_adjustment(widgets: Widgets, now: Adjustment) -> Adjustment:
+    percent = 100.0 * MAX_BRIGHTNESS
+    brightness = widgets.slider(
+        "Brightness",
+        100.0 * now.brightness,
+        -percent,
+        percent,
+        "Above 0 all gets lighter, and the lightest greys become bare paper; below 0 all gets "
+        "darker but white. In percent.",
+        "%+.0f %%",
+    )
+    contrast = widgets.slider(
+        "Contrast",
+        100.0 * now.contrast,
+        -100.0,
+        100.0,
+        "Draws light and dark apart, or together; white and black stay. In percent.",
+        "%+.0f %%",
+    )
+    gamma = widgets.slider(
+        "Gamma",
+        now.gamma,
+        *GAMMA_RANGE,
+        "Above 1 the middle greys get lighter, below 1 darker; white and black stay.",
+        "%.2f",
+        imgui.SliderFlags_.logarithmic,
+    )
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + widgets.indent - widgets.margin)
+    tip = "Black for white: dots where the picture is light."
+    invert = widgets.check("Invert", now.invert, tip)
+    imgui.same_line(0.0, widgets.gap)
+    tip = "Takes the picture as it is."
+    if widgets.button("Reset", tip, width=-1.0, enabled=now != NEUTRAL):
+        return NEUTRAL
+    return Adjustment(round(brightness) / 100, round(contrast) / 100, round(gamma, 2), invert)
