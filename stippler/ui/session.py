@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.errors import ParameterError
+from stippler.stippling.fill import Filling, fill_drawing
 from stippler.ui import work
 from stippler.ui.messages import ERROR, WARNING, Messages
 from stippler.ui.rates import StepRate
@@ -64,6 +65,8 @@ class Session:
         The drawing's dots, once they can be edited.
     position_mm, radius_mm : arrays or None
         The dots of a job that makes new ones; None when there is no such job.
+    filling : Filling
+        How a page without a picture is filled next.
     revision : int
         Grows whenever the dots to show, the page or the reference change.
     """
@@ -92,6 +95,7 @@ class Session:
         self.position_mm: NDArray[np.float64] | None = None
         self.radius_mm: NDArray[np.float32] | None = None
         self.revision = 0
+        self.filling = Filling()
         self.messages = Messages(clock)
         self.phase: Phase = "empty"
         self.stage, self.done, self.total = "", 0, 0
@@ -140,6 +144,15 @@ class Session:
             "running", "relax", lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
         )
         self.total = iterations
+
+    def fill(self) -> None:
+        """Fill the page with dots, as one step."""
+        editing = self.editing
+        if editing is None or self.drawing is None or not self.paintable or editing.in_stroke:
+            self.messages.say("there is no page to fill yet", WARNING)
+            return
+        n_dots = fill_drawing(self.drawing, editing, self.filling)
+        self.messages.say(f"{n_dots:,} dots added")
 
     def undo(self) -> None:
         """Take the last step back; a relaxation that goes on ends and is taken back."""
