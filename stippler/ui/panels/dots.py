@@ -34,7 +34,8 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     """Draw the section; on a page without a picture, filling it stands first."""
     plan = session.plan
     changes: dict[str, Any] = {}
-    if session.drawing is not None and session.reference is None:
+    blank = session.drawing is not None and session.reference is None
+    if blank:
         draw_fill(widgets, session)
         widgets.rule()
         widgets.heading("Dots")
@@ -46,17 +47,8 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
         plan.iterations,
         "Relaxation steps: each makes the spacing more even. 10 to 20 suffice.",
     )
-    by_tone = widgets.segments(
-        "Relax",
-        ("By tone", "Evenly"),
-        int(not plan.weighted),
-        (
-            "Dots move to the centre of mass of their cells: dark parts stay dense.",
-            "Dots move to the middle of their cells, as in the paper: light parts fill up.",
-        ),
-    )
-    changes["weighted"] = by_tone == 0
-    if session.drawing is None or session.reference is not None:
+    if not blank:
+        _draw_relaxation(widgets, session, changes)
         _draw_seed(widgets, session, changes)
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
     if changed:
@@ -83,6 +75,19 @@ def _draw_first_dots(widgets: Widgets, session: Session, changes: dict[str, Any]
         _draw_pulses(widgets, session, changes)
     if chosen != "pulse-density":
         changes["sizes"] = "tone"
+
+
+def _draw_relaxation(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    by_tone = widgets.segments(
+        "Relax",
+        ("By tone", "Evenly"),
+        int(not session.plan.weighted),
+        (
+            "Dots move to the centre of mass of their cells: dark parts stay dense.",
+            "Dots move to the middle of their cells, as in the paper: light parts fill up.",
+        ),
+    )
+    changes["weighted"] = by_tone == 0
 
 
 def _draw_pulses(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:

@@ -21,7 +21,7 @@ def draw_fill(widgets: Widgets, session: Session) -> None:
     before = session.filling
     n_dots = widgets.number("Fill with", before.n_dots, "How many dots.")
     chosen = widgets.segments(
-        "Arrangement",
+        "Layout",
         tuple(name.capitalize() for name in ARRANGEMENTS),
         ARRANGEMENTS.index(before.arrangement),
         ("Rows of dots at equal distances.", "Anywhere on the page; relax them to even them out."),
