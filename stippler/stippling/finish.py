@@ -40,20 +40,18 @@ def part_close(
     points = np.array(points)
     if n < 2:
         return points
-    radii, density = sheet.wanted_at(points)
+    order, cell_start, frame = sorted_by_place(points, sheet.darkness, n)
+    xy = points[order]  # few dots move, and not far: the grid of the first round serves all
+    radii, density = sheet.wanted_at(xy)
     enough = _ENOUGH / np.sqrt(np.maximum(density, 1e-12))
     rim = radii if sheet.bleed else np.zeros(n)
-    awake = np.ones(n, bool) if awake is None else np.array(awake)
-    order, cell_start, frame = sorted_by_place(points, sheet.darkness, n)
+    up = np.ones(n, bool) if awake is None else awake[order]
     nearest, lack, moves = np.zeros(n, np.int32), np.empty(n), np.empty((n, 2))
     for _ in range(_ROUNDS):
-        xy, up = points[order], awake[order]
-        run_ranges(find_close, n, xy, cell_start, frame, _APART, enough[order], up, nearest, lack)
-        n_close = push_apart(xy, nearest, lack, sheet.darkness, rim[order], moves, up)
-        points[order], awake[order] = xy, up
-        if not n_close:
+        run_ranges(find_close, n, xy, cell_start, frame, _APART, enough, up, nearest, lack)
+        if not push_apart(xy, nearest, lack, sheet.darkness, rim, moves, up):
             break
-        order, cell_start, frame = sorted_by_place(points, sheet.darkness, n)
+    points[order] = xy
     return points
 
 

@@ -283,5 +283,6 @@ def _finish(
         return
     for k, give in enumerate(_GIVES):
         points = even_rim(points, sheet, give)
+        yield 0.2 + 0.8 * (k + 0.5) / len(_GIVES), points
         points = part_close(points, sheet, at_edge(points, sheet))
         yield 0.2 + 0.8 * (k + 1) / len(_GIVES), points
