@@ -68,6 +68,14 @@ def test_stages_come_in_order_and_snapshots_are_frozen():
     assert seen.count("relax") == 4
 
 
+def test_dots_come_while_pulses_are_still_counted():
+    field = np.full((700, 700), 0.5, np.float32)
+    shown = [len(p.position_mm) for p in stages(Reference(field, 70.0), Plan(n_dots=30_000))
+             if p.stage == "first dots" and p.done < p.total]  # fmt: skip
+    assert sorted(shown) == shown
+    assert any(0 < n < 25_000 for n in shown)
+
+
 def test_without_snapshots_only_the_last_has_dots():
     plan = Plan(n_dots=900, iterations=2)
     quiet = list(stages(Reference(ramp(), 80.0), plan, snapshots=False))
