@@ -213,12 +213,17 @@ def test_an_interrupt_leaves_the_old_file(picture, tmp_path):
         [sys.executable, "-m", "stippler", "render", picture, "-o", out, "--dots", "30000",
          "--iterations", "100000"],
         stderr=subprocess.PIPE, text=True,
+        # a shell that puts the tests into the background has them ignore Ctrl-C, and all they start
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     # it would run for minutes; let it begin, then press Ctrl-C
     timer = threading.Timer(2.0, process.send_signal, [signal.SIGINT])
     timer.start()
-    _, stderr = process.communicate(timeout=WAIT_S)
-    timer.cancel()
+    try:
+        _, stderr = process.communicate(timeout=WAIT_S)
+    finally:
+        timer.cancel()
+        process.kill()
     assert process.returncode == 130
     assert stderr == "stippler: stopped; nothing was written\n"
     assert out.read_bytes() == b"before"
