@@ -85,8 +85,9 @@ Neighbours whose cells have about the same tone then even out their sizes; acros
 First dots: each region's growth is skewed to a side, as if by chance. The more skew, the less
 direction, and the less even are the dots: 0.9 is the most with which pulse-density alone keeps the
 better spectrum and its closest pairs. Pulses of unequal size (tried, and left out: up to two fifths
-more or less) had as little direction at the same unevenness, and twice the power below half. Relaxed
-dots settle into grains of a hexagonal grid, and what direction is left after 20 steps is theirs.
+more or less) had as little direction at the same unevenness, and twice the power below half.
+Relaxed dots settle into grains of a hexagonal grid, and what direction is left after 20 steps is
+theirs.
 """
 
 
