@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import moderngl
@@ -21,9 +22,10 @@ from benchmarks.figures import Figure, median_s
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.pens import Preview, ShapeChange
+from stippler.drawing.preview import Footprint, Preview
+from stippler.drawing.shape_change import ShapeChange, to
 from stippler.files.svg import svg_chunks
-from stippler.headless import open_context
+from stippler.headless import is_software, open_context, open_gpu_context
 from stippler.kernels.dot_shape import bezier_outlines
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
@@ -64,10 +66,10 @@ def figures(quick: bool = False) -> list[Figure]:
     repeats = 7 if quick else 15
     ctx = open_context()
     try:
-        results = _frames(ctx, repeats) + _uploads(ctx, repeats)
-        results += _gpu_frames(ctx, repeats)
+        results = _frames(ctx, repeats) + _previews(ctx, repeats) + _uploads(ctx, repeats)
     finally:
         ctx.release()
+    results += _gpu_frames(repeats)
     return results + _outlines(repeats) + _pictures(3 if quick else 5)
 
 
@@ -99,14 +101,13 @@ def _frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
         stage = _Stage(ctx, drawing(100_000, kind), WINDOW)
         wall = 1e3 * median_s(stage.frame, repeats, warm=2)
         cpu = 1e3 * cpu_s(stage.frame, repeats)
-        reach = 60.0 if kind == "round" else None
         note = f"{name}; {cpu:.0f} ms of CPU time"
         label = {"round": "round", "smooth": "elongated", "rough": "rough, elongated"}[kind]
         results.append(
-            Figure(f"frame, 100,000 {label} dots, 1280 x 800", wall, "ms", reach, note=note)
+            Figure(f"frame, 100,000 {label} dots, 1280 x 800", wall, "ms", 60.0, note=note)
         )
         if kind == "round":
-            results += [_preview_cost(stage, repeats), _zoomed(stage, repeats)]
+            results.append(_zoomed(stage, repeats))
         stage.release()
     return results
 
@@ -128,15 +129,37 @@ def _zoomed(stage: _Stage, repeats: int) -> Figure:
     )
 
 
-def _preview_cost(stage: _Stage, repeats: int) -> Figure:
-    """Time what a preview asks of the CPU: its uniforms."""
-    tip = Preview(ShapeChange(radius=(1.1, 0.0)), "tip", (100, 60), 10.0)
+def _previews(ctx: moderngl.Context, repeats: int) -> list[Figure]:
+    """Time what a preview asks of the CPU, its uniforms; and what a hovering brush draws."""
+    stage = _Stage(ctx, drawing(200_000), WINDOW)
+    stage.frame()
+    under = Footprint((100.0, 60.0), (0.25, 0.0, 0.0, 0.25), 4.0, hardness=0.5)
+    tip = Preview(ShapeChange(stretch=1.0, angle_rad=1.0), under)
+    whole = Preview(ShapeChange(elongation=to(2.0)))
+    size = (64, 64)
+    tile = stage.camera.tile((610, 355), size, WINDOW)
 
     def both() -> None:
         stage.renderer.set_preview(tip)
         stage.renderer.set_preview(None)
 
-    return Figure("setting a preview on 100,000 dots", 1e3 * median_s(both, repeats), "ms")
+    def hover() -> None:
+        stage.renderer.set_preview(tip)
+        stage.renderer.draw(replace(tile, center_mm=next(places)), size, stage.target)
+        stage.renderer.set_preview(None)
+        ctx.finish()
+
+    places = ((100.0 + 0.01 * k, 60.0) for k in range(10_000))
+    setting = 1e3 * median_s(both, repeats)
+    hovering = 1e3 * median_s(hover, 4 * repeats, warm=3)
+    stage.renderer.set_preview(whole)
+    held = 1e3 * median_s(stage.frame, repeats, warm=2)
+    stage.release()
+    return [
+        Figure("setting a preview on 200,000 dots", setting, "ms"),
+        Figure("what a brush of 4 mm hovers over, in 200,000 dots", hovering, "ms"),
+        Figure("frame, 200,000 round dots, elongated by a held slider", held, "ms"),
+    ]
 
 
 def _uploads(ctx: moderngl.Context, repeats: int) -> list[Figure]:
@@ -164,11 +187,22 @@ def _uploads(ctx: moderngl.Context, repeats: int) -> list[Figure]:
     ]
 
 
-def _gpu_frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
-    """Time a million deformed dots at 4k by the GPU's own clock; nothing on software GL."""
-    if is_software(ctx):
-        print("a million dots at 4k: no GPU here", file=sys.stderr)
-        return []
+def _gpu_frames(repeats: int) -> list[Figure]:
+    """Time a million deformed dots at 4k by a GPU's own clock; not on software GL."""
+    name = "frame, 1,000,000 deformed dots, 3840 x 2160"
+    ctx = open_gpu_context()
+    try:
+        driver = ctx.info["GL_RENDERER"]
+        if is_software(ctx):
+            print(f"{name}: not measured, no GPU here ({driver})", file=sys.stderr)
+            return []
+        median = _by_the_gpu_ms(ctx, repeats)
+    finally:
+        ctx.release()
+    return [Figure(name, median, "ms", 4.0, note=f"{driver}, timer queries")]
+
+
+def _by_the_gpu_ms(ctx: moderngl.Context, repeats: int) -> float:
     stage = _Stage(ctx, drawing(1_000_000, "rough"), UHD)
     clock = ctx.query(time=True)
     times = []
@@ -177,14 +211,7 @@ def _gpu_frames(ctx: moderngl.Context, repeats: int) -> list[Figure]:
             stage.frame()
         times.append(clock.elapsed / 1e6)
     stage.release()
-    median = statistics.median(times[repeats:])
-    note = f"{ctx.info['GL_RENDERER']}, timer queries"
-    return [Figure("frame, 1,000,000 deformed dots, 3840 x 2160", median, "ms", 4.0, note=note)]
-
-
-def is_software(ctx: moderngl.Context) -> bool:
-    """Return whether the context's driver draws on the CPU."""
-    return any(name in ctx.info["GL_RENDERER"].lower() for name in ("llvmpipe", "softpipe", "swr"))
+    return statistics.median(times[repeats:])
 
 
 def _outlines(repeats: int) -> list[Figure]:

@@ -7,25 +7,28 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from stippler.api import stipple
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.pens import PENS, Pen
 from stippler.headless import render_image
 from stippler.render.renderer import INK, PAPER
 
-WIDTH, HEIGHT = 250.0, 206.0
+WIDTH, HEIGHT = 250.0, 256.0
 SCALE = 6.4
 ELONGATIONS = (1.0, 1.5, 2.0, 3.0, 4.0)
 ROUGHNESSES = (0.0, 0.25, 0.5, 0.75, 1.0)
 PEN_TOP = 92.0
 PATCH = 44.0
+PICTURE = 104.0  # mm, width of the sample of which each pen draws a part
+MIDDLE = (0.41, 0.41)  # of that part, in shares of the width
 
 
 def plate() -> tuple[Dots, list[tuple[float, float, str]]]:
@@ -38,10 +41,10 @@ def plate() -> tuple[Dots, list[tuple[float, float, str]]]:
             "Elongation 1 to 4 (across), roughness 0 to 1 (down), all of one area",
         ),
         (172.0, 5.0, "Sixteen seeds, roughness 0.5"),
-        (8.0, PEN_TOP - 3, "Pens: twelve dots, enlarged, and a tone from 5 to 75 %"),
+        (8.0, PEN_TOP - 3, "Pens: twelve dots, enlarged; a tone from 5 to 75 %; the same picture"),
     ]
     for j, roughness in enumerate(ROUGHNESSES):
-        words.append((6.0, 17.0 + 15 * j, f"{roughness:g}"))
+        words.append((8.0, 17.0 + 15 * j, f"{roughness:g}"))
         for i, elongation in enumerate(ELONGATIONS):
             x, y = 26.0 + 29 * i, 19.0 + 15 * j
             parts.append(
@@ -52,10 +55,13 @@ def plate() -> tuple[Dots, list[tuple[float, float, str]]]:
     for k in range(16):
         x, y = 180.0 + 18 * (k % 4), 20.0 + 18 * (k // 4)
         parts.append(dots([(x, y)], 5.0, 1.0, 0.0, 0.5, 900 + k))
+    picture = part_of_picture()
     for k, pen in enumerate(PENS):
         left = 8.0 + 48.5 * k
-        words.append((left, PEN_TOP + 3, pen.name))
+        words.append((left, PEN_TOP + 3, pen.label))
         parts += [samples(pen, left), tone(pen, left, PEN_TOP + 42)]
+        place = (left, PEN_TOP + 114)
+        parts.append(pen.drawn(replace(picture, position_mm=picture.position_mm + place)))
     together = {f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Dots)}
     return Dots(**together), words
 
@@ -70,18 +76,10 @@ def dots(
     return made
 
 
-def drawn_with(pen: Pen, made: Dots) -> Dots:
-    """Return dots as a pen makes them."""
-    shapes = pen.shapes(made)
-    made.elongation, made.angle_rad = shapes.elongation, shapes.angle_rad
-    made.roughness = shapes.roughness
-    return made
-
-
 def samples(pen: Pen, left: float) -> Dots:
     """Return twelve large dots."""
     grid = np.stack(np.meshgrid(np.arange(4), np.arange(3)), -1).reshape(-1, 2)
-    return drawn_with(pen, Dots.round(grid * 11.0 + (left + 5.0, PEN_TOP + 15.0), 2.4))
+    return pen.drawn(Dots.round(grid * 11.0 + (left + 5.0, PEN_TOP + 15.0), 2.4))
 
 
 def tone(pen: Pen, left: float, top: float) -> Dots:
@@ -89,7 +87,15 @@ def tone(pen: Pen, left: float, top: float) -> Dots:
     position = relaxed(900) * (PATCH, 66.0) + (left, top)
     dark = np.interp(position[:, 1], (top, top + 66), (0.05, 0.75))
     radius = np.sqrt(dark * PATCH * 66.0 / (900 * math.pi))
-    return drawn_with(pen, Dots.round(position, radius, first_id=7))
+    return pen.drawn(Dots.round(position, radius, first_id=7))
+
+
+def part_of_picture() -> Dots:
+    """Return the round dots of a square part of a sample, from its corner."""
+    path = Path(__file__).resolve().parent.parent / "assets" / "samples" / "ammonite.png"
+    dots = stipple(path, dots=7_000, width=PICTURE).dots
+    dots.position_mm -= np.multiply(MIDDLE, PICTURE) - PATCH / 2
+    return dots.take(((dots.position_mm > 0) & (dots.position_mm < PATCH)).all(axis=1))
 
 
 def relaxed(n: int) -> NDArray[np.float64]:

@@ -37,7 +37,9 @@ flat out vec4 v_rough0, v_rough1, v_rough2, v_rough3;
 void main() {
     Shape shape = unpack_shape(a_shape);
     float radius_mm = a_dot.z;
+#ifdef PREVIEW
     deform(a_dot.xy, radius_mm, shape);
+#endif
     vec2 center = u_page_to_px * (a_dot.xy - u_center_mm) + u_middle_px;
     float opacity;
     float paling = shared_opacity(shape.share, radius_mm * u_px_per_mm);

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.drawing import Drawing as _Drawing
+from stippler.drawing.pens import pen_named
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.plan import Plan
+from stippler.stippling.plan import DEFAULT_PEN, Plan
 from stippler.stippling.stipple import Progress, notes_on, stages
 from stippler.units import DEFAULT_WIDTH_MM
 
@@ -64,6 +65,7 @@ def stipple(
     start: str = "top",
     sizes: str = "tone",
     weighted: bool = True,
+    pen: str = DEFAULT_PEN,
 ) -> Drawing:
     """Turn a picture into a stipple drawing.
 
@@ -94,6 +96,8 @@ def stipple(
         Sizes that meet the tone, or the paper's: by how far pulse-density regions had to grow.
     weighted : bool
         Relax by the tone; False is the paper's form, whose light parts fill up.
+    pen : str
+        Whose shapes the dots have: technical-pen (round), quill, brush, rough-paper or stick.
 
     Returns
     -------
@@ -120,6 +124,7 @@ def stipple(
         start=start,
         sizes=sizes,
         weighted=weighted,
+        pen=pen,
     )
     return draw(image, plan, tone=tone, width_mm=width)
 
@@ -245,10 +250,11 @@ def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
     return picture.darkness_of_array(image, tone)
 
 
-def _style(radius_mm: NDArray[np.float32], plan: Plan) -> Style | None:
-    """Return the size range the dots were drawn with."""
+def _style(radius_mm: NDArray[np.float32], plan: Plan) -> Style:
+    """Return the size range and the pen the dots were drawn with."""
+    pen = pen_named(plan.pen)
     if plan.size_range_mm is not None:
-        return Style(*plan.size_range_mm)
+        return Style(*plan.size_range_mm, pen)
     if not len(radius_mm):
-        return None
-    return Style(float(radius_mm.min()), float(radius_mm.max()))
+        return Style(pen=pen)
+    return Style(float(radius_mm.min()), float(radius_mm.max()), pen)

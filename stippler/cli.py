@@ -61,6 +61,12 @@ Sizes = Annotated[
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
+PenOption = Annotated[
+    str,
+    typer.Option(
+        "--pen", metavar="NAME", help="technical-pen, quill, brush, rough-paper or stick."
+    ),
+]
 
 
 def _version(shown: bool) -> None:
@@ -94,6 +100,7 @@ def edit(
     start: Start = "top",
     sizes: Sizes = "tone",
     unweighted: Unweighted = False,
+    pen: PenOption = "technical-pen",
 ) -> None:
     """Open the editor."""
     plan = _plan(
@@ -106,6 +113,7 @@ def edit(
         start=start,
         sizes=sizes,
         weighted=not unweighted,
+        pen=pen,
     )
     _check_page(tone, width)
     if file is not None:
@@ -135,6 +143,7 @@ def render(
     start: Start = "top",
     sizes: Sizes = "tone",
     unweighted: Unweighted = False,
+    pen: PenOption = "technical-pen",
 ) -> None:
     """Turn a picture into a drawing, without a window."""
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
@@ -151,6 +160,7 @@ def render(
         start=start,
         sizes=sizes,
         weighted=not unweighted,
+        pen=pen,
     )
     _check_page(tone, width)
     from stippler.progress import stages_shown

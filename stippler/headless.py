@@ -17,10 +17,39 @@ from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
 MAX_SIDE_PX = 100_000
+_MOST_DEVICES = 16
 _STRIP_PX = 4_000_000  # pixels in one strip
 
 WHITE: Color = (1.0, 1.0, 1.0)
 BLACK: Color = (0.0, 0.0, 0.0)
+
+
+def is_software(ctx: moderngl.Context) -> bool:
+    """Return whether a context's driver draws on the CPU."""
+    name = ctx.info["GL_RENDERER"].lower()
+    return any(driver in name for driver in ("llvmpipe", "softpipe", "swrast", "swiftshader"))
+
+
+def open_gpu_context() -> moderngl.Context:
+    """Open a context on the first EGL device that is a GPU; on the first of all without one.
+
+    Raises
+    ------
+    DisplayError
+        If there is no OpenGL 3.3 to be had.
+    """
+    ctx = open_context()
+    create: Any = moderngl.create_standalone_context
+    for device in range(1, _MOST_DEVICES):
+        if not is_software(ctx):
+            break
+        try:
+            other = create(require=330, backend="egl", device_index=device)
+        except Exception:  # noqa: BLE001 - no such device, or one without OpenGL 3.3
+            continue
+        ctx.release()
+        ctx = other
+    return ctx
 
 
 def open_context() -> moderngl.Context:

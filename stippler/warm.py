@@ -75,7 +75,8 @@ def _write(drawing: Drawing) -> None:
         drawing.dots.elongation[:], drawing.dots.roughness[:] = elongation, roughness
         list(svg_chunks(drawing))
         with contextlib.suppress(DisplayError):  # without OpenGL nothing needs those kernels
-            render_image(drawing, px_per_mm=2.0)
+            for px_per_mm in (2.0, 8.0):  # seen from afar; near enough to look rough
+                render_image(drawing, px_per_mm=px_per_mm)
 
 
 def _main() -> None:

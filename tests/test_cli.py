@@ -86,7 +86,8 @@ def test_every_way_of_making_is_another_drawing(picture, tmp_path):
     ways = [[], ["--growth", "triangular"], ["--start", "border"], ["--unweighted"],
             ["--sizes", "regions"],
             ["--first-dots", "floyd-steinberg"], ["--first-dots", "random"],
-            ["--first-dots", "hexagonal"], ["--tone", "perceptual"]]  # fmt: skip
+            ["--first-dots", "hexagonal"], ["--tone", "perceptual"],
+            ["--pen", "brush"]]  # fmt: skip
     files = set()
     for k, way in enumerate(ways):
         out = tmp_path / f"{k}.csv"
@@ -148,6 +149,7 @@ def test_render_png_has_its_size_and_resolution(picture, tmp_path):
         (["--first-dots", "magic"], ["magic", "pulse-density"]),
         (["--growth", "square"], ["square", "circular"]),
         (["--start", "middle"], ["middle", "border"]),
+        (["--pen", "biro"], ["biro", "quill"]),
         (["--nonsense"], ["--nonsense"]),
     ],
 )

@@ -91,6 +91,36 @@ def test_sizes_that_make_no_picture_are_refused(drawing, scale):
         headless.image_size(drawing, scale)
 
 
+@pytest.mark.parametrize(
+    ("drivers", "chosen"),
+    [
+        (["llvmpipe (LLVM 19)", None, "NVIDIA H100"], "NVIDIA H100"),
+        (["NVIDIA H100", "llvmpipe"], "NVIDIA H100"),
+        (["llvmpipe"], "llvmpipe"),
+    ],
+)
+def test_a_gpu_is_preferred_to_software_wherever_it_stands(monkeypatch, drivers, chosen):
+    class Context:
+        def __init__(self, name):
+            self.info, self.released = {"GL_RENDERER": name}, False
+
+        def release(self):
+            self.released = True
+
+    made = []
+
+    def create(*, require, backend, device_index=0):
+        if device_index >= len(drivers) or drivers[device_index] is None:
+            raise Exception("no such device")
+        made.append(Context(drivers[device_index]))
+        return made[-1]
+
+    monkeypatch.setattr(moderngl, "create_standalone_context", create)
+    ctx = headless.open_gpu_context()
+    assert ctx.info["GL_RENDERER"] == chosen
+    assert [one for one in made if not one.released] == [ctx]
+
+
 def test_no_gl_is_said_with_what_to_install(monkeypatch):
     def fails(**options):
         raise Exception("cannot open libEGL.so")

@@ -21,5 +21,5 @@ vec2 drawn_axes(float radius_px, float elongation, out float opacity) {
 // to the union of all; a dot of several pixels keeps its opacity, as ink beyond 1 is cut off.
 float shared_opacity(float share, float radius_px) {
     if (share >= 1.0) return 1.0;
-    return pow(share, 1.0 / (1.0 + pow(radius_px, 2.5)));
+    return pow(share, 1.0 / (1.0 + radius_px * radius_px * sqrt(radius_px)));
 }

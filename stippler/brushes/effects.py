@@ -97,7 +97,7 @@ def spray(touch: Touch) -> None:
     brush = touch.brush
     points = scatter.spray(n, brush.tip, brush.radius_mm, touch.rng) + touch.at_mm
     if brush.value("by_tone"):
-        points = points[touch.rng.random(len(points)) < size.sample(touch.reference, points)]
+        points = points[touch.rng.random(len(points)) < touch.reference.at(points)]
     apart_mm = touch.number("apart_mm")
     if apart_mm > 0.0 and len(points):
         points = points[touch.editing.apart(points, apart_mm)]
@@ -202,64 +202,23 @@ def comb(touch: Touch) -> None:
 
 def resize(touch: Touch) -> None:
     """Change radii."""
-    dots, rows = touch.editing.dots, touch.rows
-    radius = dots.radius_mm[rows].astype(np.float64)
-    how, amount = touch.brush.value("how"), touch.number("amount")
-    if how == "enlarge" or how == "reduce":
-        new = size.scaled(radius, touch.weight, amount if how == "enlarge" else -amount)
-    elif how == "set":
-        new = size.pulled(radius, touch.weight, touch.number("dot_mm"), 1.0)
-    else:
-        new = size.pulled(radius, touch.weight, _tone_target(touch), amount / 100.0)
-    touch.editing.change("radius_mm", rows, new.astype(np.float32))
-
-
-def _tone_target(touch: Touch) -> Floats:
+    change = shape.size_change(touch.brush)
+    if change is not None:
+        shape.reshape(touch.editing, touch.rows, change, touch.weight)
+        return
     area = areas_of(touch.editing, touch.rows)
-    limits = (size.SMALLEST_MM, size.LARGEST_MM)
-    return size.tone_radius(touch.position_mm, area, touch.reference, limits)
+    target = size.tone_radius(touch.position_mm, area, touch.reference)
+    old = touch.editing.dots.radius_mm[touch.rows].astype(np.float64)
+    new = size.pulled(old, touch.weight, target, touch.share("amount"))
+    touch.editing.change("radius_mm", touch.rows, new.astype(np.float32))
 
 
 def deform(touch: Touch) -> None:
     """Change shapes."""
-    editing, rows = touch.editing, touch.rows
-    how, amount = touch.brush.value("how"), touch.share("amount")
-    if how in ("roughen", "smooth"):
-        old = editing.dots.roughness[rows].astype(np.float64)
-        new = shape.roughened(old, touch.weight, amount if how == "roughen" else -amount)
-        editing.change("roughness", rows, new.astype(np.float32))
-        return
-    direction = np.zeros(len(rows))
-    if how == "stretch":
-        found = _directions(touch)
-        if found is None:
-            return
-        direction = found
-    elongation, angle = shape.elongated(
-        editing.dots.elongation[rows].astype(np.float64),
-        editing.dots.angle_rad[rows].astype(np.float64),
-        touch.weight,
-        amount if how == "stretch" else -amount,
-        direction,
-    )
-    editing.change("elongation", rows, elongation.astype(np.float32))
-    if how == "stretch":
-        editing.change("angle_rad", rows, angle.astype(np.float32))
-
-
-def _directions(touch: Touch) -> Floats | None:
-    """Return the direction of each dot's stretch; None where the stroke has none yet."""
-    n, along = len(touch.rows), touch.brush.value("along")
-    if along == "stroke":
-        direction = touch.stamp.direction_rad
-        return None if math.isnan(direction) else np.full(n, direction)
-    if along == "angle":
-        return np.full(n, math.radians(touch.number("angle")))
-    if along == "edge":
-        return shape.edge_directions(
-            touch.reference, touch.position_mm, 0.25 * touch.brush.radius_mm
-        )
-    return shape.random_directions(touch.editing.dots.seed[touch.rows])
+    reference = touch.editing.drawing.reference
+    change = shape.form_change(touch.brush, touch.stamp.direction_rad, reference)
+    if change is not None:
+        shape.reshape(touch.editing, touch.rows, change, touch.weight)
 
 
 EFFECTS: dict[str, Callable[[Touch], None]] = {

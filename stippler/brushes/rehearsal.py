@@ -13,6 +13,7 @@ from stippler.brushes.stroking import Stroke
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.editing import Editing
+from stippler.drawing.reference import Reference
 
 
 @cache
@@ -21,10 +22,13 @@ def rehearse() -> None:
     drawing = Drawing.blank(Page(10.0, 10.0))
     place = np.stack(np.meshgrid(np.arange(1.0, 10.0), np.arange(1.0, 10.0)), axis=-1)
     drawing.dots = Dots.round(place.reshape(-1, 2), 0.2)
+    ramp = np.linspace(0.0, 1.0, 64, dtype=np.float32).reshape(8, 8)
+    drawing.reference = Reference(ramp, 10.0)
     editing = Editing(drawing)
-    for kind in KINDS:
-        if kind.rhythm != "select":
-            brush = Brush(kind.name, kind.name, 3.0)
+    brushes = [Brush(kind.name, kind.name, 3.0) for kind in KINDS]
+    brushes.append(Brush("along edges", "shape", 3.0, values={"along": "edge"}))
+    for brush in brushes:
+        if brush.about.rhythm != "select":
             stroke = Stroke(editing, brush, PointerSample(5.0, 5.0), 1)
             stroke.commit(PointerSample(6.0, 5.0, t=0.1))
     editing.merge(editing.begin_run("relax").position_mm)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from stippler.brushes.cells import centroids_of
 from stippler.brushes.jitter import jitter
-from stippler.brushes.size import scaled
+from stippler.brushes.shape import reshape, resized
 from stippler.drawing.editing import Editing
 from stippler.drawing.store import Rows
 
@@ -95,7 +95,4 @@ def shake(editing: Editing, ids: Ids, rng: np.random.Generator) -> None:
 
 def resize(editing: Editing, ids: Ids, percent: float) -> None:
     """Enlarge the dots, or reduce them below 0."""
-    rows = alive(editing, ids)
-    radius = editing.dots.radius_mm[rows].astype(np.float64)
-    new = scaled(radius, np.ones(len(rows)), percent)
-    editing.change("radius_mm", rows, new.astype(np.float32))
+    reshape(editing, alive(editing, ids), resized(percent))

@@ -1,50 +1,104 @@
-"""Dots deformed and made round again."""
+"""What a stamp of a size or shape brush does to the dots under it, as a change of shape.
+
+The same change is made by a stamp and shown by a preview.
+"""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+import math
+from typing import Any
 
-from stippler.brushes.size import sample
-from stippler.drawing.dots import MAX_ELONGATION
+from stippler.brushes.brush import Brush
+from stippler.drawing.editing import Editing
+from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
+from stippler.drawing.shape_change import Edges, Floats, ShapeChange, Step, to
+from stippler.drawing.store import Rows
+from stippler.errors import ParameterError
 
-Floats = NDArray[np.float64]
+_EDGE_SHARE = 0.25  # of the brush's radius, over which the reference's slope is measured
 
 
-def elongated(
-    elongation: Floats, angle_rad: Floats, weight: Floats, amount: float, direction_rad: Floats
-) -> tuple[Floats, Floats]:
-    """Stretch dots along a direction (or, below 0, take stretch away in any); return both fields.
+def size_change(brush: Brush) -> ShapeChange | None:
+    """Return what a size brush does; None where each dot has a goal of its own."""
+    how = brush.value("how")
+    if how == "tone":
+        return None
+    if how == "set":
+        return ShapeChange(radius=to(float(brush.value("dot_mm"))))
+    return resized(float(brush.value("amount")) * (1.0 if how == "enlarge" else -1.0))
 
-    A dot that is stretched another way already turns towards the direction as it takes on more:
-    its stretch is a vector at twice its angle, and vectors are added.
+
+def resized(percent: float) -> ShapeChange:
+    """Return what enlarges radii by a percentage, or below 0 takes that back."""
+    factor = 1.0 + abs(percent) / 100.0
+    return ShapeChange(radius=Step(factor if percent > 0.0 else 1.0 / factor))
+
+
+def form_change(
+    brush: Brush, direction_rad: float, reference: Reference | None
+) -> ShapeChange | None:
+    """Return what a shape brush does.
+
+    Parameters
+    ----------
+    direction_rad : float
+        Of the stroke; NaN before it has one, and what goes along it does nothing then.
+
+    Raises
+    ------
+    ParameterError
+        If the brush goes by a picture and there is none.
     """
-    if amount < 0.0:
-        return np.maximum(elongation + amount * weight, 1.0), angle_rad
-    u = (elongation - 1.0) * np.cos(2.0 * angle_rad) + amount * weight * np.cos(2.0 * direction_rad)
-    v = (elongation - 1.0) * np.sin(2.0 * angle_rad) + amount * weight * np.sin(2.0 * direction_rad)
-    length = np.hypot(u, v)
-    turned = np.where(length > 1e-9, 0.5 * np.arctan2(v, u), angle_rad)
-    return np.minimum(1.0 + length, MAX_ELONGATION), turned
+    how, amount = brush.value("how"), float(brush.value("amount")) / 100.0
+    if how in ("roughen", "smooth"):
+        return ShapeChange(roughness=Step(addend=amount if how == "roughen" else -amount))
+    if how == "round":
+        return ShapeChange(elongation=Step(addend=-amount))
+    along = brush.value("along")
+    if along == "random":
+        return ShapeChange(stretch=amount, angle_rad=0.0, scatter_rad=math.pi / 2)
+    if along == "edge":
+        return ShapeChange(stretch=amount, edges=_edges(brush, reference))
+    angle = direction_rad if along == "stroke" else math.radians(float(brush.value("angle")))
+    return None if math.isnan(angle) else ShapeChange(stretch=amount, angle_rad=angle)
 
 
-def roughened(roughness: Floats, weight: Floats, amount: float) -> Floats:
-    """Make outlines rougher, or smoother below 0."""
-    return np.clip(roughness + amount * weight, 0.0, 1.0)
+def _edges(brush: Brush, reference: Reference | None) -> Edges:
+    if reference is None:
+        raise ParameterError(
+            "goes by the picture, and there is none", brush.name, "open a picture first"
+        )
+    return Edges(reference, max(_EDGE_SHARE * brush.radius_mm, reference.pixel_mm))
 
 
-def random_directions(seed: NDArray[np.uint32]) -> Floats:
-    """Return each dot's own direction, the same at every stamp."""
-    mixed = (seed.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(40)
-    return np.asarray(mixed.astype(np.float64) * (np.pi / 2.0**24))
+def preview_of(
+    brush: Brush,
+    at_mm: tuple[float, float],
+    direction_rad: float,
+    strength: float,
+    reference: Reference | None,
+) -> Preview | None:
+    """Return what a stamp would do, to be shown; None for a brush of which that cannot be said.
+
+    Parameters
+    ----------
+    strength : float
+        What stands in for a pen's pressure.
+    """
+    change = None
+    if brush.kind == "size":
+        change = size_change(brush)
+    elif brush.kind == "shape" and (reference is not None or brush.value("along") != "edge"):
+        change = form_change(brush, direction_rad, reference)
+    footprint = brush.tip.footprint(at_mm, brush.radius_mm, strength)
+    return Preview(change, footprint) if change and footprint else None
 
 
-def edge_directions(reference: Reference, position_mm: Floats, reach_mm: float) -> Floats:
-    """Return the direction along the reference's edge at points: across its steepest slope."""
-    reach = max(reach_mm, reference.pixel_mm)
-    slope = [
-        sample(reference, position_mm + step) - sample(reference, position_mm - step)
-        for step in (np.array([reach, 0.0]), np.array([0.0, reach]))
-    ]
-    return np.arctan2(slope[1], slope[0]) + np.pi / 2.0
+def reshape(
+    editing: Editing, rows: Rows, change: ShapeChange, weight: float | Floats = 1.0
+) -> None:
+    """Change the shapes of some dots, within a stroke."""
+    new: Any = change.of(editing.dots.take(rows), weight)
+    for field, values in new.items():
+        editing.change(field, rows, values)

@@ -173,10 +173,13 @@ def between(a: PointerSample, b: PointerSample, share: float) -> PointerSample:
 
 
 class Spacer:
-    """Stamps at even steps of arc length, the first where the stroke begins."""
+    """Stamps at even steps of arc length, the first where the stroke begins.
 
-    def __init__(self, spacing_mm: float) -> None:
-        self._spacing = spacing_mm
+    That one has the direction in which the pointer came, if it is known.
+    """
+
+    def __init__(self, spacing_mm: float, heading_rad: float = math.nan) -> None:
+        self._spacing, self._heading = spacing_mm, heading_rad
         self._last: PointerSample | None = None
         self._stamp: Stamp | None = None
         self._left = 0.0
@@ -186,7 +189,7 @@ class Spacer:
         last, self._last = self._last, sample
         if last is None:
             self._left = self._spacing
-            self._stamp = Stamp(sample.x, sample.y, sample.pressure)
+            self._stamp = Stamp(sample.x, sample.y, sample.pressure, self._heading)
             yield self._stamp
             return
         length = math.hypot(sample.x - last.x, sample.y - last.y)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -27,6 +28,8 @@ class Stroke:
         Not in a stroke.
     seed : int
         Of all that is left to chance in this stroke.
+    heading_rad : float
+        Direction in which the pointer came; NaN if it is not known.
 
     Attributes
     ----------
@@ -34,7 +37,14 @@ class Stroke:
         The last sample.
     """
 
-    def __init__(self, editing: Editing, brush: Brush, first: PointerSample, seed: int) -> None:
+    def __init__(
+        self,
+        editing: Editing,
+        brush: Brush,
+        first: PointerSample,
+        seed: int,
+        heading_rad: float = math.nan,
+    ) -> None:
         self._editing, self._brush = editing, brush
         self._rng = np.random.default_rng(seed)
         self._smoothing = smoothing_of(brush.smoothing, brush.smoothing_mm)
@@ -42,7 +52,7 @@ class Stroke:
         self._count = Count(per_s)
         step_s = 1.0 / (per_s if brush.kind == "relax" else _TICKS_PER_S)
         self._ticker = Ticker(step_s) if brush.about.rhythm == "time" else None
-        self._spacer = Spacer(brush.spacing * brush.radius_mm)
+        self._spacer = Spacer(brush.spacing * brush.radius_mm, heading_rad)
         self._dragged: tuple[int, float, float] | None = None
         self._pressed = False
         self.end = first

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.preview import MOST_CORNERS, Footprint, Outline
 from stippler.errors import ParameterError
 
 Points = NDArray[np.float64]
@@ -16,6 +18,12 @@ TipShape = Literal["circle", "ellipse", "square", "polygon"]
 TIP_SHAPES: tuple[TipShape, ...] = get_args(TipShape)
 
 _MOST_TRIES = 64
+_OUTLINES: dict[TipShape, Outline] = {
+    "circle": "round",
+    "ellipse": "round",
+    "square": "square",
+    "polygon": "polygon",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +85,25 @@ class Tip:
         c, s = math.cos(self.angle_rad), math.sin(self.angle_rad)
         return np.asarray(points @ np.array([(c, s), (-s, c)]) * radius_mm)
 
+    def footprint(
+        self, center_mm: tuple[float, float], radius_mm: float, strength: float
+    ) -> Footprint | None:
+        """Return what `weight` needs as plain numbers; None for a polygon of many corners."""
+        if len(self.corners) > MOST_CORNERS:
+            return None
+        c, s = math.cos(self.angle_rad) / radius_mm, math.sin(self.angle_rad) / radius_mm
+        squeeze = self.aspect if self.shape == "ellipse" else 1.0
+        return Footprint(
+            center_mm,
+            (c, s, -s / squeeze, c / squeeze),
+            self.reach(radius_mm),
+            _OUTLINES[self.shape],
+            self.hardness,
+            strength,
+            self.corners if self.shape == "polygon" else (),
+            _depth_of(self.corners) if self.shape == "polygon" else 1.0,
+        )
+
     def reach(self, radius_mm: float) -> float:
         """Return a distance from the middle that no part of the tip goes beyond."""
         return radius_mm * (math.sqrt(2.0) if self.shape in ("square", "polygon") else 1.0)
@@ -115,9 +142,7 @@ class Tip:
             return np.hypot(x, y / self.aspect)
         if self.shape == "square":
             return np.maximum(np.abs(x), np.abs(y))
-        depth = _depth(unit, np.array(self.corners))
-        deepest = max(float(depth.max(initial=0.0)), _deepest(self.corners))
-        return np.asarray(1.0 - depth / deepest)
+        return np.asarray(1.0 - _depth(unit, np.array(self.corners)) / _depth_of(self.corners))
 
 
 def in_polygon(points: Points, corners: Points) -> NDArray[np.bool_]:
@@ -144,8 +169,9 @@ def _depth(points: Points, corners: Points) -> NDArray[np.float64]:
     return np.where(in_polygon(points, corners), least, -least)
 
 
-def _deepest(corners: tuple[tuple[float, float], ...]) -> float:
+@lru_cache(16)
+def _depth_of(corners: tuple[tuple[float, float], ...]) -> float:
     """Return about how far the middle of a polygon is from its border."""
-    side = np.linspace(-1.0, 1.0, 21)
+    side = np.linspace(-1.0, 1.0, 41)
     grid = np.array(np.meshgrid(side, side)).reshape(2, -1).T
     return max(float(_depth(grid, np.array(corners)).max()), 1e-3)

@@ -82,9 +82,7 @@ class Dots:
             elongation=np.ones(n, np.float32),
             angle_rad=np.zeros(n, np.float32),
             roughness=np.zeros(n, np.float32),
-            seed=(ids.astype(np.uint64) * np.uint64(2654435761) & np.uint64(0xFFFFFFFF)).astype(
-                np.uint32
-            ),
+            seed=first_seeds(ids),
             area=np.full(n, area, np.int32),
             fixed=np.zeros(n, np.bool_),
             id=ids,
@@ -102,3 +100,9 @@ class Dots:
     def copy(self) -> Dots:
         """Return dots that share no memory with these."""
         return self.take(slice(None))
+
+
+def first_seeds(ids: NDArray[np.int64]) -> NDArray[np.uint32]:
+    """Return the seeds that new dots have."""
+    mixed = ids.astype(np.uint64) * np.uint64(2654435761)
+    return (mixed & np.uint64(0xFFFFFFFF)).astype(np.uint32)

@@ -67,9 +67,9 @@ class Drawing:
         radius_mm: NDArray[np.float32],
         style: Style | None = None,
     ) -> Self:
-        """Make a drawing of round dots on a page of the reference's size."""
+        """Make a drawing on a page of the reference's size; the style's pen gives dots shapes."""
         drawing = cls.blank(Page(reference.width_mm, reference.height_mm), style)
-        drawing.dots = Dots.round(position_mm, radius_mm)
+        drawing.dots = drawing.areas[0].style.pen.drawn(Dots.round(position_mm, radius_mm))
         drawing.reference = reference
         return drawing
 

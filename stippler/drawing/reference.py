@@ -68,3 +68,15 @@ class Reference:
         """Height of the field on the page."""
         rows: int = self.darkness.shape[0]
         return self.pixel_mm * rows
+
+    def at(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the darkness at points of the page, between pixels by interpolation.
+
+        Parameters
+        ----------
+        position_mm : (n, 2) float64
+            Points beside the field take that of its border.
+        """
+        from stippler.kernels.sampling import sampled  # numba: late, for the first frame's sake
+
+        return sampled(self.darkness, 1.0 / self.pixel_mm, position_mm)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from stippler.drawing.pens import PENS, Pen
 from stippler.errors import ParameterError
 
 
@@ -16,10 +17,13 @@ class Style:
     ----------
     radius_min_mm, radius_max_mm : float
         Range of dot radii; artists use 1:2 (Deussen et al. 2000, section 3).
+    pen : Pen
+        Gives dots their shapes.
     """
 
     radius_min_mm: float = 0.15
     radius_max_mm: float = 0.30
+    pen: Pen = PENS[0]
 
     def __post_init__(self) -> None:
         low, high = self.radius_min_mm, self.radius_max_mm

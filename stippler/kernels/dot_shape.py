@@ -185,11 +185,11 @@ def check_shapes(elongation: ArrayLike, angle_rad: ArrayLike, roughness: ArrayLi
         ("roughness", roughness, 0.0, 1.0),
         ("angle", angle_rad, -math.inf, math.inf),
     ):
-        array = np.asarray(values, np.float64)
+        array = np.atleast_1d(values)
+        least, most = array.min(initial=1.0), array.max(initial=1.0)  # NaN if any is
+        if math.isfinite(least) and math.isfinite(most) and low <= least and most <= high:
+            continue
         fine = np.isfinite(array) & (array >= low) & (array <= high)
-        if not fine.all():
-            wrong = array.ravel()[int(np.argmin(fine.ravel()))]
-            within = (
-                f"keep it within {low:g} to {high:g}" if math.isfinite(low) else "keep it finite"
-            )
-            raise ParameterError(f"{wrong:g} is out of range", name, within)
+        wrong = array.ravel()[int(np.argmin(fine.ravel()))]
+        within = f"keep it within {low:g} to {high:g}" if math.isfinite(low) else "keep it finite"
+        raise ParameterError(f"{wrong:g} is out of range", name, within)

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.dot_shape import MAX_ELONGATION
-from stippler.kernels.jit import inline, kernel
+from stippler.kernels.jit import ZERO, inline, kernel
 from stippler.kernels.pool import run_ranges
 
 N_WORDS = 6  # x, y, radius; elongation and angle, roughness, flags and share, seed
 WORD_BYTES = 4
 FIXED, SELECTED = 1, 2
+SEED = 5  # its place among the words
 ROUND_WORDS = (0, 0xFF000000, 0)  # elongation 1, no roughness, no flags, a share of 1
 
 _GRAIN = 16384
@@ -90,6 +91,30 @@ def _choose(place, left, top, right, bottom, pad, low, high, out):
                 out[n] = i
                 n += 1
     return n
+
+
+@kernel
+def _part(words, place, from_mm, rough, smooth):
+    n_rough, n_smooth = ZERO, ZERO
+    for i in range(words.shape[0]):
+        elongation = 1.0 + (words[i, 3] & 0xFFFF) / _PER_ELONGATION
+        radius = place[i, 2]
+        if words[i, 4] & 0xFFFF and radius * radius > from_mm * from_mm * elongation:
+            rough[n_rough] = i
+            n_rough += 1
+        else:
+            smooth[n_smooth] = i
+            n_smooth += 1
+    return n_rough
+
+
+def part_by_roughness(
+    rows: NDArray[np.uint32], from_mm: float
+) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """Return which packed dots are rough and have a short half axis above a limit, and the rest."""
+    rough, smooth = np.empty((2, len(rows)), np.uint32)
+    n_rough = _part(rows, rows.view(np.float32), from_mm, rough, smooth)
+    return rough[:n_rough], smooth[: len(rows) - n_rough]
 
 
 def set_shares(words: NDArray[np.uint32], shares: NDArray[np.float32]) -> None:

@@ -6,8 +6,9 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import Dots, first_seeds
 from stippler.kernels import gpu_dots
+from stippler.kernels.dot_shape import check_shapes
 from stippler.kernels.overlap import shares_of_union
 
 Origin = tuple[float, float]
@@ -48,7 +49,14 @@ class DotBuffer:
         return self._words[: self.n]
 
     def set(self, dots: Dots, selected: NDArray[np.bool_], origin_mm: Origin) -> bool:
-        """Upload all dots; return whether the GL buffer is another one now."""
+        """Upload all dots; return whether the GL buffer is another one now.
+
+        Raises
+        ------
+        ParameterError
+            If a shape lies outside its range.
+        """
+        check_shapes(dots.elongation, dots.angle_rad, dots.roughness)
         grown = self._resize(len(dots))
         self._order(dots.position_mm, origin_mm)
         gpu_dots.pack(dots, origin_mm, selected, self._row_of_slot, self.rows)
@@ -73,6 +81,7 @@ class DotBuffer:
         if not same:
             self._order(position_mm, origin_mm)
             self.rows[:, 3:] = gpu_dots.ROUND_WORDS
+            self.rows[:, gpu_dots.SEED] = first_seeds(self._row_of_slot)
             self._forget()
         rows = self._row_of_slot
         gpu_dots.pack_places(position_mm, radius_mm, origin_mm, rows, self.rows)
@@ -95,6 +104,7 @@ class DotBuffer:
             return self.set(dots, selected, origin_mm)
         if len(rows) == 0:
             return False
+        check_shapes(dots.elongation[rows], dots.angle_rad[rows], dots.roughness[rows])
         self._append(n_new)
         slots = np.sort(self._slot_of_row[rows])
         changed = self._row_of_slot[slots]

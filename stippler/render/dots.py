@@ -11,19 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
-from stippler.drawing.pens import Preview
+from stippler.drawing.preview import Preview
+from stippler.drawing.shape_change import MAX_RADIUS_MM, ShapeChange
 from stippler.kernels import gpu_dots
 from stippler.kernels.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.paper import Color
+from stippler.render.preview import PreviewUniforms, defines
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
 _ROUGH_FROM_PX = 1.0  # as in shaders/lib/ink.glsl
 _ALONE_PX = 4.0  # dots of this radius need not know of one another
-_NOT_OF_ROUND = ("u_form", "u_turn")
-_MODES = {"all": 1, "selected": 2, "tip": 3}
+_PAD_STEP = 1.25  # pads of previews are rounded up by this, or each would choose dots anew
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +48,12 @@ class DotsPass:
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self.buffer = DotBuffer(ctx)
+        self._preview = PreviewUniforms(ctx)
         self.n_draw_calls = 0
         self._programs: dict[tuple[str, ...], Program] = {}
         self._arrays: dict[tuple[str | int, ...], moderngl.VertexArray] = {}
         self._chosen = [_Chosen(ctx), _Chosen(ctx)]  # small, large
+        self._parts = _Parts(ctx)
         self._seen: _View | None = None
         self._all_small = True
         span = ctx.info["GL_POINT_SIZE_RANGE"]
@@ -73,8 +76,13 @@ class DotsPass:
             self.buffer.find_shares()
         self._choose(camera, size_px, origin_mm, preview)
         set_state(self._ctx, "add", sprites=True)
-        uniforms = _uniforms(camera, whole, origin_mm) | _preview_uniforms(preview, origin_mm)
-        self._run_chosen((self._kind(camera, preview),), uniforms)
+        kind = self._kind(camera, preview)
+        uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, kind, origin_mm)
+        names = (kind, *defines(preview, kind))
+        if kind == "ROUGH" and preview is None and self._all_small:
+            self._run_parts(camera, uniforms)
+        else:
+            self._run_chosen(names, uniforms)
 
     def draw_marks(
         self,
@@ -88,30 +96,33 @@ class DotsPass:
         if not self.buffer.has_flags or self.buffer.n == 0:
             return
         set_state(self._ctx, "over", sprites=True)
-        uniforms = _uniforms(camera, size_px, origin_mm) | _preview_uniforms(preview, origin_mm)
+        kind = self._kind(camera, preview)
+        uniforms = _uniforms(camera, size_px, origin_mm)
+        uniforms |= self._preview.of(preview, kind, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
-        self._run_chosen((self._kind(camera, preview), "MARKS"), uniforms)
+        self._run_chosen((kind, *defines(preview, kind), "MARKS"), uniforms)
 
-    def _run_chosen(self, defines: tuple[str, ...], uniforms: dict[str, Any]) -> None:
+    def _run_parts(self, camera: Camera, uniforms: dict[str, Any]) -> None:
+        """Draw by the shader for rough dots only those that are large enough to look rough."""
+        buffer, parts = self.buffer, self._parts
+        parts.find(buffer, _ROUGH_FROM_PX / camera.px_per_mm)
+        for kind, part in (("SMOOTH", parts.smooth), ("ROUGH", parts.rough)):
+            self._run((kind, "POINTS"), buffer.gl, part.n, uniforms, part.gl)
+
+    def _run_chosen(self, names: tuple[str, ...], uniforms: dict[str, Any]) -> None:
         if self._all_small:
-            self._run((*defines, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
+            self._run((*names, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
             return
         small, large = self._chosen
-        self._run((*defines, "POINTS"), small.gl, small.n, uniforms)
-        self._run((*defines, "QUADS"), large.gl, large.n, uniforms)
+        self._run((*names, "POINTS"), small.gl, small.n, uniforms)
+        self._run((*names, "QUADS"), large.gl, large.n, uniforms)
 
     def _choose(
         self, camera: Camera, size_px: Size, origin_mm: Origin, preview: Preview | None
     ) -> None:
         """Decide what to draw, unless the view is the one it was decided for."""
         buffer = self.buffer
-        change = preview.change if preview else None
-        growth, addend = change.radius if change else (1.0, 0.0)
-        largest = buffer.max_radius_mm * max(growth, 1.0) + max(addend, 0.0)
-        deforms = bool(change and change.deforms)
-        long = MAX_ELONGATION if deforms else buffer.max_elongation
-        pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or deforms)))
-        pad *= largest / buffer.max_radius_mm
+        pad = self._pad(preview.change if preview else None)
         small_mm = self._reach_px / (camera.px_per_mm * pad)
         view = _View(camera, size_px, pad, small_mm, buffer.revision)
         if view == self._seen:
@@ -126,39 +137,63 @@ class DotsPass:
             ):
                 chosen.set(gpu_dots.choose(buffer.rows, inside, pad, limits))
 
-    def _kind(self, camera: Camera, preview: Preview | None) -> str:
+    def reach_mm(self, change: ShapeChange) -> float:
+        """Return how far from its centre a dot may be seen when it is changed."""
+        return self._pad(change) * self.buffer.max_radius_mm if self.buffer.n else 0.0
+
+    def _pad(self, change: ShapeChange | None) -> float:
+        """Return how many of its radii a dot reaches at most."""
         buffer = self.buffer
-        deforms = bool(preview and preview.change.deforms)
-        if buffer.is_round and not deforms:
+        if change is None:
+            return math.sqrt(buffer.max_elongation * (1.0 + MAX_ROUGH * buffer.is_rough))
+        long = MAX_ELONGATION if change.elongates else buffer.max_elongation
+        pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or change.roughens)))
+        pad *= self._largest_mm(change) / buffer.max_radius_mm
+        return float(_PAD_STEP ** math.ceil(math.log(pad, _PAD_STEP)))
+
+    def _largest_mm(self, change: ShapeChange | None) -> float:
+        """Return what no dot's radius is above."""
+        largest = self.buffer.max_radius_mm
+        if change is None:
+            return largest
+        changed = largest * change.radius.factor + change.radius.addend
+        return max(largest, min(changed, MAX_RADIUS_MM))
+
+    def _kind(self, camera: Camera, preview: Preview | None) -> str:
+        """Return the cheapest shader that draws all dots right."""
+        buffer, change = self.buffer, preview.change if preview else None
+        is_rough = buffer.is_rough or (change is not None and change.roughens)
+        if buffer.is_round and not (is_rough or (change is not None and change.elongates)):
             return "ROUND"
-        largest_px = buffer.max_radius_mm * camera.px_per_mm
-        if preview:
-            return "ROUGH"
-        return "ROUGH" if buffer.is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
+        largest_px = self._largest_mm(change) * camera.px_per_mm
+        return "ROUGH" if is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
 
     def _run(
-        self, defines: tuple[str, ...], data: moderngl.Buffer, n: int, uniforms: dict[str, Any]
+        self,
+        names: tuple[str, ...],
+        data: moderngl.Buffer,
+        n: int,
+        uniforms: dict[str, Any],
+        index: moderngl.Buffer | None = None,
     ) -> None:
         if n == 0:
             return
-        program = self._programs.get(defines)
+        program = self._programs.get(names)
         if program is None:
-            asked = [d for d in defines if d not in ("SMOOTH", "QUADS")]
+            asked = [d for d in names if d not in ("SMOOTH", "QUADS")]
             program = Program(self._ctx, "dots.vert", "dots.frag", asked)
-            self._programs[defines] = program
-        as_points = "POINTS" in defines
-        key: tuple[str | int, ...] = (*defines, data.glo)
+            self._programs[names] = program
+        as_points = "POINTS" in names
+        key: tuple[str | int, ...] = (*names, data.glo, index.glo if index else 0)
         array = self._arrays.get(key)
         if array is None:
             rate = "" if as_points else "/i"
             content = [(data, f"3f4 3u4{rate}", "a_dot", "a_shape")]
-            array = self._ctx.vertex_array(program.gl, content)
+            array = self._ctx.vertex_array(program.gl, content, index_buffer=index)
             self._arrays[key] = array
         if as_points:
             assert self._seen is not None
             uniforms = uniforms | {"u_largest_mm": self._seen.largest_mm}
-        if "ROUND" in defines:
-            uniforms = {k: v for k, v in uniforms.items() if k not in _NOT_OF_ROUND}
         program.set(uniforms)
         if as_points:
             array.render(moderngl.POINTS, vertices=n)
@@ -180,25 +215,49 @@ class DotsPass:
         self._programs.clear()
         for chosen in self._chosen:
             chosen.gl.release()
+        self._parts.release()
+        self._preview.release()
         self.buffer.release()
 
 
 class _Chosen:
-    """A GL buffer with some of the dots."""
+    """A GL buffer with some of the dots, or with the numbers of some."""
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+    def __init__(self, ctx: moderngl.Context, bytes_each: int = 24) -> None:
+        self._each = bytes_each
         self._room = 256
-        self.gl = ctx.buffer(reserve=self._room * 24)
+        self.gl = ctx.buffer(reserve=self._room * bytes_each)
         self.n = 0
 
     def set(self, rows: NDArray[np.uint32]) -> None:
         self.n = len(rows)
         if self.n > self._room:
             self._room = 1 << (self.n - 1).bit_length()
-            self.gl.orphan(self._room * 24)
+            self.gl.orphan(self._room * self._each)
         if self.n:
             self.gl.write(rows)
+
+
+class _Parts:
+    """Which dots look rough at a scale, and which do not, though their outlines are."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self.rough, self.smooth = _Chosen(ctx, 4), _Chosen(ctx, 4)
+        self._found: object = None
+
+    def find(self, buffer: DotBuffer, from_mm: float) -> None:
+        """Part the dots of a buffer, unless they are parted so."""
+        key = (buffer.revision, from_mm)
+        if key != self._found:
+            rough, smooth = gpu_dots.part_by_roughness(buffer.rows, from_mm)
+            self.rough.set(rough)
+            self.smooth.set(smooth)
+            self._found = key
+
+    def release(self) -> None:
+        """Free the GL objects."""
+        self.rough.gl.release()
+        self.smooth.gl.release()
 
 
 def _inside_mm(
@@ -228,19 +287,4 @@ def _uniforms(camera: Camera, whole_px: Size, origin_mm: Origin) -> dict[str, An
         "u_middle_px": (whole_px[0] / 2, whole_px[1] / 2),
         "u_px_to_clip": (2 / whole_px[0], 2 / whole_px[1]),
         "u_px_per_mm": camera.px_per_mm,
-    }
-
-
-def _preview_uniforms(preview: Preview | None, origin_mm: Origin) -> dict[str, Any]:
-    if preview is None:
-        return {"u_preview": 0}
-    change = preview.change
-    x, y = (preview.center_mm[i] - origin_mm[i] for i in (0, 1))
-    turns = change.angle_rad is not None
-    return {
-        "u_preview": _MODES[preview.which],
-        "u_tip": (x, y, max(preview.radius_mm, 1e-6), preview.hardness),
-        "u_radius": change.radius,
-        "u_form": (*change.elongation, *change.roughness),
-        "u_turn": (float(turns), change.angle_rad or 0.0, change.scatter_rad),
     }

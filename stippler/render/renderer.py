@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from stippler.camera import Camera, Point, Size
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.drawing.dots import Dots
-from stippler.drawing.pens import Preview
+from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
 from stippler.render.dots import DotsPass
 from stippler.render.ink import InkTarget
@@ -107,6 +107,10 @@ class Renderer:
     def set_preview(self, preview: Preview | None) -> None:
         """Show dots as a brush would leave them; by uniforms only."""
         self._preview = preview
+
+    def reach_mm(self, preview: Preview) -> float:
+        """Return how far from its centre a dot may be seen when it is shown so."""
+        return self._dots.reach_mm(preview.change)
 
     def set_tip(self, center_mm: Point | None, radius_mm: float = 0.0) -> None:
         """Show the outline of a brush over the drawing, or none."""

@@ -20,7 +20,8 @@ def set_state(ctx: moderngl.Context, blending: Blending, *, sprites: bool = Fals
     if blending == "add":
         gl.blend_func = moderngl.ONE, moderngl.ONE
     else:
-        gl.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        over = moderngl.ONE_MINUS_SRC_ALPHA  # an opaque target stays opaque
+        gl.blend_func = moderngl.SRC_ALPHA, over, moderngl.ONE, over
     gl.wireframe = False
 
 

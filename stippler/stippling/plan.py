@@ -23,6 +23,7 @@ ARRANGEMENTS = ("hexagonal", "random")
 """How an area is filled where there is no picture."""
 
 DEFAULT_DOTS = 20_000
+DEFAULT_PEN = "technical-pen"
 MAX_DOTS = 20_000_000
 
 
@@ -50,6 +51,8 @@ class Plan:
         enlarged, of large ones reduced, of still larger ones dropped.
     weighted : bool
         Relax by the wanted density; False is the paper's unweighted form.
+    pen : str
+        Whose shapes the dots have; see `stippler.drawing.pens`.
     """
 
     n_dots: int | None = None
@@ -61,6 +64,7 @@ class Plan:
     start: str = "top"
     sizes: str = "tone"
     weighted: bool = True
+    pen: str = DEFAULT_PEN
 
     def __post_init__(self) -> None:
         if self.n_dots is not None and not 1 <= self.n_dots <= MAX_DOTS:
@@ -93,3 +97,7 @@ class Plan:
             raise ParameterError(
                 f"{self.first_dots} has no regions", "sizes", "take pulse-density, or sizes by tone"
             )
+        if self.pen != DEFAULT_PEN:
+            from stippler.drawing.pens import pen_named
+
+            pen_named(self.pen)

@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.drawing.adjustment import NEUTRAL
+from stippler.drawing.preview import Preview
 from stippler.ui.lens import MARGIN, Glass
 from stippler.ui.look import Look
+from stippler.ui.patch import Patch
 from stippler.ui.session import Session
 from stippler.ui.tools.toolbox import Chosen
 from stippler.ui.widgets import Rect
@@ -51,14 +53,25 @@ class Canvas:
         self._lens: LensPass | None = None  # with the first look through it
         self._glass: Glass | None = None  # of this frame
         self._lens_drawn: object = None
+        self.patch = Patch(ctx)
         self.n_drawn = self.n_lens_drawn = 0
 
-    def show(self, area: Rect, size_px: Size) -> None:
-        """Put the picture behind all panels, at ImGui's coordinates."""
+    def show(
+        self, area: Rect, size_px: Size, preview: Preview | None, camera: Camera, ratio: float
+    ) -> None:
+        """Put the picture behind all panels, at ImGui's coordinates.
+
+        Parameters
+        ----------
+        ratio : float
+            Pixels of the canvas for each of ImGui's.
+        """
         texture = self._sized(size_px)
         imgui.get_background_draw_list().add_image(
             imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0)
         )
+        self.patch.place(preview, self._made, camera, size_px)
+        self.patch.show(area, ratio)
 
     def show_lens(self, area: Rect, glass: Glass, scale: float, ratio: float) -> None:
         """Put a lens over the picture for this frame; `draw` fills it in.
@@ -80,25 +93,42 @@ class Canvas:
         draw.add_image(texture, (low[0], low[1]), (high[0], high[1]), (0.0, 1.0), (1.0, 0.0))
         draw.pop_clip_rect()
 
-    def draw(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> bool:
+    def draw(
+        self,
+        session: Session,
+        selection: Chosen,
+        camera: Camera,
+        look: Look,
+        preview: Preview | None,
+    ) -> bool:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
         size_px = self._texture.size
         content = _content(session, selection)
         adjustment = session.adjustment if look.reference_opacity else NEUTRAL
-        shown = (content, look.theme, look.reference_opacity, adjustment, look.dots_shown)
+        whole = preview if preview is None or preview.footprint is None else None
+        shown = (content, look.theme, look.reference_opacity, adjustment, look.dots_shown, whole)
         is_new = (camera, size_px, shown) != self._drawn
         if is_new:
-            self._draw_page(session, selection, camera, look)
+            self._draw_page(session, selection, camera, look, whole)
             self._drawn = (camera, size_px, shown)
             self.n_drawn += 1
         if self._glass is not None and session.drawing is not None:
-            self._draw_lens(self._glass, shown, look)
+            self._draw_lens(self._glass, shown, look, preview)
         self._glass = None
+        if self._made is not None:
+            self.patch.draw(preview, self._made, camera, size_px, look, shown)
         return is_new
 
-    def _draw_page(self, session: Session, selection: Chosen, camera: Camera, look: Look) -> None:
+    def _draw_page(
+        self,
+        session: Session,
+        selection: Chosen,
+        camera: Camera,
+        look: Look,
+        preview: Preview | None,
+    ) -> None:
         assert self._target is not None
         assert self._texture is not None
         if session.drawing is None:
@@ -111,6 +141,7 @@ class Canvas:
         renderer.set_reference(
             reference.picture if reference else None, look.reference_opacity, session.adjustment
         )
+        renderer.set_preview(preview)
         renderer.draw(
             camera,
             self._texture.size,
@@ -120,22 +151,25 @@ class Canvas:
             ink=colours.ink,
             dots=look.dots_shown,
         )
+        renderer.set_preview(None)
 
-    def _draw_lens(self, glass: Glass, shown: object, look: Look) -> None:
+    def _draw_lens(self, glass: Glass, shown: object, look: Look, preview: Preview | None) -> None:
         """Draw what the lens shows, if that is not what it showed the last time."""
         assert self._lens is not None
-        key = (glass.camera, shown, self._lens)
+        key = (glass.camera, shown, self._lens, preview)
         if key == self._lens_drawn:
             return
         from stippler.render.lens import Colors
 
-        colours = look.theme
+        colours, renderer = look.theme, self._renderer()
+        renderer.set_preview(preview)
         self._lens.draw(
-            self._renderer(),
+            renderer,
             glass.camera,
             Colors(colours.paper, colours.desk, colours.ink),
             dots=look.dots_shown,
         )
+        renderer.set_preview(None)
         self._lens_drawn = key
         self.n_lens_drawn += 1
 
@@ -207,6 +241,7 @@ class Canvas:
     def close(self) -> None:
         """Free every GL object."""
         self._free()
+        self.patch.close()
         if self._lens is not None:
             self._lens.release()
         if self._made is not None:

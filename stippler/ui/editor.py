@@ -8,12 +8,14 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from stippler.drawing.pens import pen_named
+from stippler.drawing.preview import Preview
 from stippler.ui.actions import commands_for
 from stippler.ui.canvas import Canvas
 from stippler.ui.dialogs import Dialogs, has_native_dialogs
 from stippler.ui.events import Dropped, Event, KeyDown, Moved, Pressed, Released, Scrolled
 from stippler.ui.gui import Gui
-from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW, Layout
+from stippler.ui.layout import BRUSH, DRAWING, HISTORY, SHAPE, VIEW, Layout
 from stippler.ui.lens import LensKey, place_lens
 from stippler.ui.look import Look
 from stippler.ui.messages import ERROR, WARNING
@@ -26,13 +28,16 @@ from stippler.ui.panels.new_page import NewPage
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.reference import draw_reference
+from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.sight import draw_view
 from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.tools import draw_tools
+from stippler.ui.pen_samples import PenSamples
 from stippler.ui.pointer import Pointer
 from stippler.ui.rates import FrameRate
 from stippler.ui.schedule import Schedule
 from stippler.ui.session import Session
+from stippler.ui.shaping import Shaping
 from stippler.ui.states import Idle
 from stippler.ui.view import BLANK, View
 from stippler.ui.widgets import Rect, Widgets
@@ -73,7 +78,9 @@ class Editor:
         self.dialogs = Dialogs(use_native=native)
         self.gui = Gui(window, self.look.theme)
         self.canvas = Canvas(window.ctx)
+        self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
+        self.shaping = Shaping(session, self.painting)
         self.new_page = NewPage(session)
         self.lens_key = LensKey(self.look)
         self.commands = commands_for(self, session, window)
@@ -81,6 +88,7 @@ class Editor:
         self.n_frames = 0
         self._layout, self._schedule, self._rate = Layout(), Schedule(), FrameRate()
         self._ratio, self._panel_to_show = 1.0, ""
+        self._preview: Preview | None = None
         self._last_s = clock()
         self._size_px = window.size_px
 
@@ -118,6 +126,7 @@ class Editor:
         """Keep the brushes; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self.canvas.close()
+        self._samples.close()
         self.gui.close()
 
     # --- one frame --------------------------------------------------------------------------
@@ -133,7 +142,11 @@ class Editor:
         with self._window.frame() as screen:
             try:
                 self.canvas.draw(
-                    self.session, self.painting.toolbox.selection, self.view.camera, self.look
+                    self.session,
+                    self.painting.toolbox.selection,
+                    self.view.camera,
+                    self.look,
+                    self._preview,
                 )
             except Exception as error:  # noqa: BLE001 - the editor lives on; the person is told
                 self._report(error, "the page")
@@ -150,7 +163,8 @@ class Editor:
             self._take(event)
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
-        self.canvas.show(area, self.view.size_px)
+        self._preview = self._previewed()
+        self.canvas.show(area, self.view.size_px, self._preview, self.view.camera, self._ratio)
         self._guarded("the brush's outline", lambda: self._draw_overlay(area))
         self._guarded("the lens", lambda: self._draw_lens(area))
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
@@ -158,6 +172,7 @@ class Editor:
         self._guarded("the tools", self._draw_tools)
         self._guarded("the panel", self._draw_panel)
         self._guarded("the brush's panel", self._draw_brush)
+        self._guarded("the shape panel", self._draw_shape)
         self._guarded("the view's panel", self._draw_view)
         self._guarded("the history", self._draw_history)
         if self.session.drawing is None and not self.session.busy:
@@ -206,6 +221,13 @@ class Editor:
             draw_brush(self.widgets, self.painting, self.commands)
         imgui.end()
 
+    def _draw_shape(self) -> None:
+        if imgui.begin(SHAPE, None, imgui.WindowFlags_.no_collapse)[0]:
+            draw_shape(self.widgets, self.shaping, self._samples)
+        else:
+            self.shaping.let_go()
+        imgui.end()
+
     def _draw_history(self) -> None:
         if imgui.begin(HISTORY, None, imgui.WindowFlags_.no_collapse)[0]:
             draw_history(self.widgets, self.session, self.painting, self.commands)
@@ -232,6 +254,15 @@ class Editor:
         sight = Sight(camera, self.pointer.at_mm, zoom, self.look.dots_shown)
         draw_status(self.widgets, self.session, sight, self._rate)
 
+    def _previewed(self) -> Preview | None:
+        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        if self.session.pen:
+            return Preview(pen_named(self.session.pen).change)
+        hovers = isinstance(self.pointer.state, Idle)
+        return self.shaping.preview or (
+            self.painting.preview(self.pointer.at_mm) if hovers else None
+        )
+
     def _place(self, area: Rect) -> None:
         """Tell view and pointer where the canvas is."""
         self._ratio = ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
@@ -250,6 +281,8 @@ class Editor:
                 self._drop(paths)
             case KeyDown() if self.gui.wants_keys or self._asks:
                 pass
+            case KeyDown(key="escape") if self.shaping.let_go():
+                imgui.internal.clear_active_id()
             case KeyDown() if self.painting.is_busy or self.painting.leave(event):
                 self._paint(event)
             case KeyDown() if self.commands.take(event):

@@ -89,6 +89,11 @@ class FocusLost:
 
 
 @dataclass(frozen=True, slots=True)
+class Gone:
+    """The pointer left the window."""
+
+
+@dataclass(frozen=True, slots=True)
 class Dropped:
     """Files were dropped on the window."""
 
@@ -100,4 +105,6 @@ class Exposed:
     """The window has to be drawn anew: uncovered, resized, or on another screen."""
 
 
-Event = Moved | Pressed | Released | Scrolled | KeyDown | KeyUp | FocusLost | Dropped | Exposed
+Event = (
+    Moved | Pressed | Released | Scrolled | KeyDown | KeyUp | FocusLost | Gone | Dropped | Exposed
+)

@@ -74,6 +74,16 @@ class Host:
         imgui.backends.glfw_cursor_pos_callback(self._address, float(x), float(y))
         self._frame()
 
+    def leave(self) -> None:
+        """Take the pointer out of the window."""
+        imgui.backends.glfw_cursor_enter_callback(self._address, 0)
+        self._frame()
+
+    def enter(self) -> None:
+        """Bring it back."""
+        imgui.backends.glfw_cursor_enter_callback(self._address, 1)
+        self._frame()
+
     def press(self, button: str = "left", *, shift: bool = False) -> None:
         """Press a mouse button."""
         self._button(button, glfw.PRESS, glfw.MOD_SHIFT if shift else 0)

@@ -7,7 +7,8 @@ from imgui_bundle import imgui
 from stippler.ui.theme import PANEL_WIDTH, STATUS_HEIGHT, STRIP_WIDTH
 from stippler.ui.widgets import Rect
 
-DRAWING, BRUSH, VIEW, HISTORY = "Drawing", "Brush", "View", "History"
+DRAWING, BRUSH, SHAPE, VIEW, HISTORY = "Drawing", "Brush", "Shape", "View", "History"
+_TAB_PADDING = 7.0  # so that all tabs fit beside one another
 _HOST = (
     imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_docking
@@ -42,7 +43,10 @@ class Layout:
         if not self._docked:
             self._dock(space, size, scale)
             self._docked = True
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (_TAB_PADDING * scale, 5.0 * scale))
+        imgui.push_style_var(imgui.StyleVar_.item_inner_spacing, (2.0 * scale, 4.0 * scale))
         imgui.dock_space(space, (0.0, 0.0), imgui.DockNodeFlags_.passthru_central_node)
+        imgui.pop_style_var(2)
         imgui.end()
         middle = imgui.internal.dock_builder_get_central_node(space)
         left, top = round(middle.pos.x), round(middle.pos.y)
@@ -56,7 +60,7 @@ class Layout:
         build.dock_builder_set_node_size(space, size)
         share = min(PANEL_WIDTH * scale / max(size[0], 1.0), 0.6)
         split = build.dock_builder_split_node(space, imgui.Dir.left, share)
-        for name in (DRAWING, BRUSH, VIEW, HISTORY):
+        for name in (DRAWING, BRUSH, SHAPE, VIEW, HISTORY):
             build.dock_builder_dock_window(name, split.id_at_dir)
         build.dock_builder_get_node(split.id_at_dir).set_local_flags(
             build.DockNodeFlagsPrivate_.no_close_button

@@ -19,6 +19,8 @@ from stippler.ui.tools.toolbox import Toolbox
 
 if TYPE_CHECKING:
     from stippler.drawing.editing import Editing
+    from stippler.drawing.preview import Preview
+    from stippler.drawing.shape_change import ShapeChange
 
 Action = Callable[["Editing"], None]
 
@@ -87,6 +89,25 @@ class Painting:
         what = str(error).strip().partition("\n")[0][:120]
         text = f"the brush failed ({type(error).__name__}: {what}); the stroke is taken back"
         self._session.messages.say(text, ERROR, error)
+
+    # --- changes of shape -------------------------------------------------------------------
+
+    def preview(self, at_mm: Point | None) -> Preview | None:
+        """Return what the brush would do where the pointer is, to be shown; None elsewhere."""
+        if at_mm is None or self._editing is None or not self._session.paintable:
+            return None
+        return self.toolbox.preview(at_mm, self._session.reference)
+
+    def reshape(self, label: str, change: ShapeChange, *, selected: bool) -> None:
+        """Change the shapes of all dots, or of the chosen ones."""
+        from stippler.brushes.selection import alive
+        from stippler.brushes.shape import reshape
+
+        def act(editing: Editing) -> None:
+            rows = alive(editing, self._ids) if selected else np.arange(len(editing.dots))
+            reshape(editing, rows, change)
+
+        self._act(label, act)
 
     # --- the selection ----------------------------------------------------------------------
 

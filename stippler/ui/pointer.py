@@ -8,6 +8,7 @@ from stippler.camera import Point
 from stippler.ui.events import (
     Event,
     FocusLost,
+    Gone,
     KeyDown,
     KeyUp,
     Moved,
@@ -52,6 +53,8 @@ class Pointer:
                 self.at_px = None if elsewhere else (local.x_px, local.y_px)
                 if not elsewhere or held(self.state) or isinstance(event, Moved):
                     self._pass(local)
+            case Gone():
+                self.at_px = None
             case KeyDown() | KeyUp() | FocusLost():
                 self._pass(event)
 

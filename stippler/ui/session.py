@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing, Page
     from stippler.drawing.editing import Editing
     from stippler.drawing.reference import Reference
@@ -277,6 +278,12 @@ class Session:
         return self.editing is not None and (not self.busy or self.relaxing)
 
     @property
+    def pen(self) -> str:
+        """The pen that draws the dots of a job that makes new ones; empty without such a job."""
+        making = self.position_mm is not None and self.running_plan is not None
+        return self.running_plan.pen if making and self.running_plan else ""
+
+    @property
     def steps_per_s(self) -> float:
         """Relaxation steps a second in the work that runs, or the last; 0 before any."""
         return self._steps.per_s
@@ -390,7 +397,7 @@ class Session:
         from stippler.drawing.editing import Editing
 
         if self.position_mm is not None and self.radius_mm is not None:
-            made = Dots.round(self.position_mm, self.radius_mm)
+            made = self._drawn(Dots.round(self.position_mm, self.radius_mm))
             if self.editing is None:
                 self.drawing.dots = made
             else:
@@ -408,8 +415,15 @@ class Session:
         if self.position_mm is not None and self.radius_mm is not None:
             from stippler.drawing.dots import Dots
 
-            return replace(drawing, dots=Dots.round(self.position_mm, self.radius_mm))
+            made = self._drawn(Dots.round(self.position_mm, self.radius_mm))
+            return replace(drawing, dots=made)
         return work.frozen(drawing)
+
+    def _drawn(self, dots: Dots) -> Dots:
+        """Return dots as the plan's pen draws them."""
+        from stippler.drawing.pens import pen_named
+
+        return pen_named(self.running_plan.pen).drawn(dots) if self.running_plan else dots
 
     def _report(self) -> None:
         """Say what has been drawn, and what it falls short of."""

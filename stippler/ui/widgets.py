@@ -75,8 +75,8 @@ class Widgets:
         imgui.set_next_item_width(-1.0)
 
     def tip(self, text: str) -> None:
-        """Explain the last control when the pointer rests on it."""
-        if imgui.is_item_hovered(
+        """Explain the last control when the pointer rests on it, and does not hold it."""
+        if not imgui.is_item_active() and imgui.is_item_hovered(
             imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
         ):
             imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))

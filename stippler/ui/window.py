@@ -29,6 +29,7 @@ from stippler.ui.events import (
     Event,
     Exposed,
     FocusLost,
+    Gone,
     KeyDown,
     KeyUp,
     Mods,
@@ -157,6 +158,7 @@ class Window:
         glfw.set_scroll_callback(self._handle, self._on_scroll)
         glfw.set_key_callback(self._handle, self._on_key)
         glfw.set_window_focus_callback(self._handle, self._on_focus)
+        glfw.set_cursor_enter_callback(self._handle, self._on_enter)
         glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]
         exposed = self._on_expose
         glfw.set_window_refresh_callback(self._handle, exposed)
@@ -188,6 +190,10 @@ class Window:
     def _on_focus(self, _: object, focused: int) -> None:
         if not focused:
             self._events.append(FocusLost())
+
+    def _on_enter(self, _: object, entered: int) -> None:
+        if not entered:
+            self._events.append(Gone())
 
     def _on_drop(self, _: object, paths: list[str]) -> None:
         self._events.append(Dropped(tuple(Path(path) for path in paths)))

@@ -17,7 +17,7 @@ from stippler import headless
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
-from stippler.drawing.pens import PENS
+from stippler.drawing.pens import PENS, pen_named
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -57,10 +57,7 @@ def dots_of(pen_name: str) -> Dots:
     grid = np.stack(np.meshgrid(np.arange(14), np.arange(10)), -1).reshape(-1, 2)
     position = (grid + 0.5 + rng.uniform(-0.25, 0.25, grid.shape)) * (16 / 14, 12 / 10)
     dots = Dots.round(position, rng.uniform(0.2, 0.45, len(grid)))
-    shapes = next(pen for pen in PENS if pen.name == pen_name).shapes(dots)
-    dots.elongation, dots.angle_rad = shapes.elongation, shapes.angle_rad
-    dots.roughness = shapes.roughness
-    return dots
+    return pen_named(pen_name).drawn(dots)
 
 
 def difference(a: np.ndarray, b: np.ndarray) -> float:
@@ -87,7 +84,7 @@ def compare(name: str, seen: np.ndarray) -> None:
 
 @pytest.mark.parametrize("pen", [pen.name for pen in PENS])
 def test_pens(picture, pen):
-    compare(f"pen-{pen.replace(' ', '-')}", picture(dots_of(pen)))
+    compare(f"pen-{pen}", picture(dots_of(pen)))
 
 
 @pytest.mark.parametrize("zoom", ZOOMS)
@@ -111,7 +108,7 @@ def test_any_missing_dot_fails(picture, pen):
 
 
 def test_a_dot_moved_by_a_pixel_fails(picture):
-    dots = dots_of("technical pen")
+    dots = dots_of("technical-pen")
     whole = picture(dots)
     dots.position_mm[70, 0] += 1 / 8
     assert difference(picture(dots), whole) > BOUND
@@ -129,6 +126,6 @@ def test_a_failure_leaves_pictures_to_look_at(picture, monkeypatch, tmp_path):
 
 
 def test_nothing_kept_is_unused():
-    used = {f"pen-{pen.name.replace(' ', '-')}" for pen in PENS}
+    used = {f"pen-{pen.name}" for pen in PENS}
     used |= {f"zoom-{zoom}" for zoom in ZOOMS} | {"polarity-white-on-black"}
     assert {path.stem for path in HERE.glob("*.png")} == used

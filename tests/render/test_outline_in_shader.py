@@ -8,9 +8,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from stippler.brushes.tip import Tip
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
-from stippler.drawing.pens import PENS, Preview, ShapeChange
+from stippler.drawing.pens import PENS
+from stippler.drawing.preview import Preview
+from stippler.drawing.reference import Reference
+from stippler.drawing.shape_change import Edges, ShapeChange, Step, to
 from stippler.kernels.dot_shape import outlines
 
 RADIUS_PX = 100.0
@@ -65,25 +69,58 @@ def test_the_edge_on_screen_is_the_outline(
     assert np.abs(on - 0.5).mean() < 0.06
 
 
+def hill() -> Reference:
+    y, x = np.mgrid[0:90, 0:120] / 90.0
+    return Reference(np.exp(-8 * ((x - 0.6) ** 2 + (y - 0.5) ** 2)).astype(np.float32), 40.0)
+
+
+ANY = math.pi / 2
 CHANGES = {
-    "enlarge": ShapeChange(radius=(1.4, 0.0)),
-    "set size": ShapeChange(radius=(0.0, 0.5)),
-    "reduce": ShapeChange(radius=(0.5, -0.01)),
-    "deform": ShapeChange(elongation=(1.0, 1.2), roughness=(1.0, 0.5)),
-    "round": ShapeChange(elongation=(0.0, 1.0), roughness=(0.0, 0.0)),
-    "direct": ShapeChange(elongation=(0.0, 3.0), angle_rad=0.7),
-    "scatter": ShapeChange(elongation=(1.3, 0.0), scatter_rad=math.pi / 2),
+    "enlarge": ShapeChange(radius=Step(1.4)),
+    "set size": ShapeChange(radius=to(0.5)),
+    "reduce": ShapeChange(radius=Step(0.5, -0.01)),
+    "deform": ShapeChange(elongation=Step(addend=1.2), roughness=Step(addend=0.5)),
+    "round": ShapeChange(elongation=to(1.0), roughness=to(0.0)),
+    "direct": ShapeChange(elongation=to(3.0), angle_rad=0.7),
+    "upright": ShapeChange(elongation=to(2.0), angle_rad=math.pi / 2),
+    "scatter": ShapeChange(elongation=Step(1.3), scatter_rad=ANY),
+    "along edges": ShapeChange(elongation=to(3.0), edges=Edges(hill(), 1.0)),
+    "stretch": ShapeChange(stretch=0.8, angle_rad=math.pi / 2),
+    "stretch at random": ShapeChange(stretch=0.8, angle_rad=0.0, scatter_rad=ANY),
+    "stretch along edges": ShapeChange(stretch=0.8, edges=Edges(hill(), 1.0)),
+    "pen": PENS[-1].change,
 }
-WHERE = {
-    "all": {"which": "all"},
-    "selected": {"which": "selected"},
-    "hard tip": {"which": "tip", "center_mm": (22.0, 13.0), "radius_mm": 9.0},
-    "soft tip": {"which": "tip", "center_mm": (22.0, 13.0), "radius_mm": 12.0, "hardness": 0.2},
+CORNERS = ((-1.0, -0.8), (0.9, -0.9), (0.2, 0.0), (0.7, 1.0), (-0.6, 0.6))
+TIPS = {
+    "hard": (Tip(hardness=1.0), 9.0),
+    "soft": (Tip(hardness=0.2), 12.0),
+    "ellipse": (Tip("ellipse", 0.4, 0.3, 0.5), 14.0),
+    "square": (Tip("square", 0.5, angle_rad=0.3), 9.0),
+    "polygon": (Tip("polygon", 0.3, corners=CORNERS), 11.0),
 }
+AT, STRENGTH = (22.0, 13.0), 0.7
 
 
-@pytest.mark.parametrize("where", WHERE)
-@pytest.mark.parametrize("change", CHANGES)
+def weights(where: str, dots: Dots, selected: np.ndarray) -> np.ndarray | float:
+    """Return how far each dot follows: what a brush's tip says, or the selection."""
+    if where in TIPS:
+        tip, radius = TIPS[where]
+        return STRENGTH * tip.weight(dots.position_mm - AT, radius)
+    return selected.astype(float) if where == "selected" else 1.0
+
+
+def preview_of(change: ShapeChange, where: str) -> Preview:
+    if where in TIPS:
+        tip, radius = TIPS[where]
+        return Preview(change, tip.footprint(AT, radius, STRENGTH))
+    return Preview(change, where)
+
+
+CASES = [("deform", where) for where in (*TIPS, "selected")]
+CASES += [(change, where) for change in CHANGES for where in ("all", "soft")]
+
+
+@pytest.mark.parametrize(("change", "where"), CASES)
 def test_letting_go_leaves_what_the_preview_showed(renderer, ink, many, change, where):
     dots = many()
     selected = np.arange(len(dots)) % 3 == 0
@@ -91,11 +128,10 @@ def test_letting_go_leaves_what_the_preview_showed(renderer, ink, many, change, 
     renderer.set_dots(dots, selected)
     camera, size = Camera((20, 15), 24.0), (960, 720)
     plain = ink(camera, size)
-    preview = Preview(CHANGES[change], **WHERE[where])
-    renderer.set_preview(preview)
+    renderer.set_preview(preview_of(CHANGES[change], where))
     shown = ink(camera, size)
-    new = preview.change.of(dots, preview.weights(dots.position_mm, selected))
-    made = dataclasses.replace(dots, **{f: getattr(new, f) for f in new.__dataclass_fields__})
+    new = CHANGES[change].of(dots, weights(where, dots, selected))
+    made = dataclasses.replace(dots, **new)
     renderer.set_preview(None)
     assert (ink(camera, size) == plain).all()
     renderer.set_dots(made, selected)
@@ -111,7 +147,7 @@ def test_a_preview_uploads_nothing(renderer, ink, many, monkeypatch):
     ink(Camera((20, 15), 8.0), (320, 240))
     revision = renderer._dots.buffer.revision
     before = renderer._dots.buffer.gl.read()
-    renderer.set_preview(Preview(ShapeChange(radius=(2.0, 0.0))))
+    renderer.set_preview(Preview(ShapeChange(radius=Step(2.0))))
     ink(Camera((20, 15), 8.0), (320, 240))
     assert renderer._dots.buffer.revision == revision
     assert renderer._dots.buffer.gl.read() == before
@@ -123,24 +159,22 @@ def test_an_enlarged_preview_reaches_into_the_view(renderer, ink, shaped):
     renderer.set_dots(shaped([(20.0, 15.0), (1.0, 1.0)], 0.5))
     camera = Camera((24.0, 15.0), 100.0)
     assert ink(camera, (320, 240)).sum() == 0
-    renderer.set_preview(Preview(ShapeChange(radius=(0.0, 3.0))))
+    renderer.set_preview(Preview(ShapeChange(radius=to(3.0))))
     assert ink(camera, (320, 240)).sum() > 1000
 
 
 @pytest.mark.parametrize("pen", PENS, ids=lambda pen: pen.name)
 def test_a_pen_keeps_areas_and_ranges(pen, many):
-    dots = many(kind="round")
-    shapes = pen.shapes(dots)
-    assert (shapes.radius_mm == dots.radius_mm).all()
-    for values, (low, high) in (
-        (shapes.elongation, pen.elongation),
-        (shapes.roughness, pen.roughness),
-    ):
-        assert values.min() >= np.float32(low) - 1e-6
-        assert values.max() <= np.float32(high) + 1e-6
-        assert np.ptp(values) >= 0.9 * (high - low)
-    assert np.ptp(shapes.angle_rad) <= 2 * pen.spread_rad + 1e-6
-    assert np.ptp(shapes.angle_rad) >= 1.8 * pen.spread_rad
+    new = pen.change.of(many(kind="round"))
+    assert "radius_mm" not in new
+    for name, (low, high) in (("elongation", pen.elongation), ("roughness", pen.roughness)):
+        assert new[name].min() >= np.float32(low) - 1e-6
+        assert new[name].max() <= np.float32(high) + 1e-6
+        assert np.ptp(new[name]) >= 0.9 * (high - low)
+    away = new["angle_rad"] - pen.angle_rad
+    away -= math.pi * np.round(away / math.pi)  # the same axis
+    assert np.abs(away).max() <= pen.spread_rad + 1e-6
+    assert np.ptp(away) >= 1.8 * pen.spread_rad
 
 
 def test_pens_and_changes_refuse_nonsense():
@@ -157,11 +191,11 @@ def test_pens_and_changes_refuse_nonsense():
         with pytest.raises(ParameterError):
             Pen("x", **wrong)
     with pytest.raises(ParameterError):
-        ShapeChange(radius=(math.inf, 0.0))
+        ShapeChange(radius=Step(math.inf))
 
 
 def test_a_change_turns_the_shorter_way():
     dots = Dots.round([(0, 0)], 1.0)
     dots.angle_rad[:] = math.radians(170)
-    turned = ShapeChange(angle_rad=0.0).of(dots).angle_rad[0]
+    turned = ShapeChange(angle_rad=0.0).of(dots)["angle_rad"][0]
     assert turned == pytest.approx(math.radians(180), abs=1e-5)  # the same axis as 0

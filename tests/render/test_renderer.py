@@ -11,7 +11,10 @@ from stippler import headless
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
+from stippler.drawing.pens import pen_named
+from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
+from stippler.errors import ParameterError
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -140,6 +143,26 @@ def test_round_dots_that_become_rough_in_part_are_drawn_rough(page, ink, many):
     np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=1.5 / 255)
 
 
+def test_dots_too_small_to_look_rough_are_drawn_smooth_and_look_the_same(
+    page, ink, many, monkeypatch
+):
+    """The same pixels as if all went through the shader for rough dots."""
+    dots = many()
+    dots.roughness[::4] = 0
+    page.set_dots(dots)
+    camera, size = Camera((20, 15), 12.0), (480, 360)
+    seen = ink(camera, size)
+    assert page.n_draw_calls == 2
+    parts = page._dots._parts
+    assert 0 < parts.rough.n < len(dots)
+    assert parts.rough.n + parts.smooth.n == len(dots)
+    monkeypatch.setattr(
+        page._dots, "_run_parts", lambda _, uniforms: page._dots._run_chosen(("ROUGH",), uniforms)
+    )
+    np.testing.assert_allclose(ink(camera, size), seen, atol=1.5 / 255)
+    assert page.n_draw_calls == 1
+
+
 @pytest.mark.parametrize("n_new", [1, 30, 900])
 def test_new_dots_are_appended(page, ink, many, n_new):
     dots = many(40, 40)
@@ -150,6 +173,20 @@ def test_new_dots_are_appended(page, ink, many, n_new):
     seen = ink(FIT, SIZE)
     page.set_dots(dots)
     np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=1.5 / 255)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("elongation", 4.5), ("roughness", -0.1), ("angle_rad", math.nan)]
+)
+def test_shapes_outside_the_range_are_refused_with_a_message(page, ink, many, name, value):
+    dots = many()
+    page.set_dots(dots)
+    seen = ink(FIT, SIZE)
+    getattr(dots, name)[3] = value
+    for upload in (lambda: page.set_dots(dots), lambda: page.update_dots(dots, np.array([3]))):
+        with pytest.raises(ParameterError, match=name.removesuffix("_rad")):
+            upload()
+    assert (ink(FIT, SIZE) == seen).all()
 
 
 def test_removed_dots_are_gone(page, ink, many):
@@ -179,6 +216,17 @@ def test_positions_of_another_number_are_round_dots(page, ink, many):
     seen = ink(FIT, SIZE)
     page.set_dots(others)
     np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=1.5 / 255)
+
+
+def test_what_a_worker_makes_is_seen_as_its_pen_will_draw_it(page, ink, many):
+    made = many(7, 5, "round")
+    pen = pen_named("stick")
+    page.set_positions(made.position_mm, made.radius_mm)
+    page.set_preview(Preview(pen.change))
+    seen = ink(FIT, SIZE)
+    page.set_preview(None)
+    page.set_dots(pen.drawn(Dots.round(made.position_mm, made.radius_mm)))
+    np.testing.assert_allclose(ink(FIT, SIZE), seen, atol=0.03)
 
 
 def test_drawing_twice_gives_the_same_bits(page, canvas, many):

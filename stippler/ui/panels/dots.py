@@ -7,6 +7,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
+from stippler.drawing.pens import PENS
 from stippler.stippling.plan import FIRST_DOTS, GROWTHS, SIZES, STARTS
 from stippler.ui import work
 from stippler.ui.commands import Commands
@@ -49,6 +50,7 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     )
     if not blank:
         _draw_relaxation(widgets, session, changes)
+        _draw_pen(widgets, session, changes)
         _draw_seed(widgets, session, changes)
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
     if changed:
@@ -88,6 +90,17 @@ def _draw_relaxation(widgets: Widgets, session: Session, changes: dict[str, Any]
         ),
     )
     changes["weighted"] = by_tone == 0
+
+
+def _draw_pen(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    pens = [pen.name for pen in PENS]
+    chosen = widgets.choice(
+        "Pen",
+        [pen.label for pen in PENS],
+        pens.index(session.plan.pen),
+        "The shapes of the dots; the Shape panel shows the pens, and changes dots that are there.",
+    )
+    changes["pen"] = pens[chosen]
 
 
 def _draw_pulses(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:

@@ -60,6 +60,8 @@ class Desk:
         From pixels of the canvas to mm on the page.
     pressure : callable
         From a point and a time to what stands in for a pen's pressure.
+    heading_rad : float
+        Direction in which the pointer came; NaN if it is not known.
     """
 
     editing: Editing
@@ -71,6 +73,7 @@ class Desk:
     next_seed: Callable[[], int]
     set_brush: Callable[[Brush], None]
     last_end: PointerSample | None
+    heading_rad: float
 
     def sample(self, event: Moved | Pressed | Released) -> PointerSample:
         """Return where on the page an event was."""
@@ -81,7 +84,7 @@ class Desk:
         """Begin a stroke."""
         from stippler.brushes.stroking import Stroke
 
-        return Stroke(self.editing, self.brush, first, self.next_seed())
+        return Stroke(self.editing, self.brush, first, self.next_seed(), self.heading_rad)
 
 
 class ToolState(Protocol):

@@ -21,9 +21,12 @@ from stippler.ui.tools.states import Cornering, Desk, Outlining, Point, Rest, St
 
 if TYPE_CHECKING:
     from stippler.drawing.editing import Editing
+    from stippler.drawing.preview import Preview
+    from stippler.drawing.reference import Reference
 
 LIGHT_PRESSURE = 0.3
 _FAST_RADII_PER_S = 30.0  # a stroke this fast has the least pressure
+_HEADING_PX = 6.0  # shorter ways are shaking
 _CALM_S = 0.08  # over which the speed is averaged
 
 Say = Callable[[str, str], None]
@@ -92,6 +95,8 @@ class Toolbox:
         self._alt = False
         self._speed: tuple[Point, float, float] | None = None  # where, when, mm/s
         self._unsaved = False
+        self._from: Point | None = None  # where the pointer was when its heading was last looked at
+        self._heading_rad = math.nan
 
     # --- brushes ----------------------------------------------------------------------------
 
@@ -184,6 +189,8 @@ class Toolbox:
             return False
         desk = self._desk(editing, brush, page, px_per_mm)
         before = self.state
+        if isinstance(event, Moved):
+            self._head(page(event.x_px, event.y_px), px_per_mm)
         try:
             self.state = before.take(event, desk)
         except BaseException:
@@ -234,7 +241,27 @@ class Toolbox:
             self._next_seed,
             self.set_brush,
             self._last_end,
+            self._heading_rad,
         )
+
+    def _head(self, at: Point, px_per_mm: float) -> None:
+        """Note where the pointer is going."""
+        if self._from is None:
+            self._from = at
+        dx, dy = at[0] - self._from[0], at[1] - self._from[1]
+        if math.hypot(dx, dy) * px_per_mm >= _HEADING_PX:
+            self._from, self._heading_rad = at, math.atan2(dy, dx)
+
+    def preview(self, at_mm: Point, reference: Reference | None) -> Preview | None:
+        """Return what a press would do to the dots under the tip, where that can be shown."""
+        brush = self.brush
+        if brush is None or self.is_busy or brush.kind not in ("size", "shape"):
+            return None
+        from stippler.brushes.shape import preview_of
+
+        light = brush.pressure == "key" and self._alt
+        strength = LIGHT_PRESSURE if light else 1.0
+        return preview_of(brush, at_mm, self._heading_rad, strength, reference)
 
     def _next_seed(self) -> int:
         self._n_strokes += 1
