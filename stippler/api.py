@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,18 +15,29 @@ from stippler.drawing.drawing import Drawing as _Drawing
 from stippler.drawing.pens import pen_named
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
-from stippler.errors import ParameterError
+from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.plan import DEFAULT_PEN, Plan
 from stippler.stippling.stipple import Progress, notes_on, stages
 from stippler.units import DEFAULT_WIDTH_MM
 
+if TYPE_CHECKING:
+    from shapely.geometry import MultiPolygon, Polygon
+
 Tone = Literal["linear", "perceptual"]
 
 
+@dataclass(slots=True, eq=False)
 class Drawing(_Drawing):
-    """A drawing that can be saved, and shows itself in a notebook."""
+    """A drawing that can be saved, and shows itself in a notebook.
 
-    __slots__ = ()
+    Attributes
+    ----------
+    notes : tuple of str
+        What the drawing falls short of, if anything: parts too dark for its dots, how much and
+        where; dots that did not fit.
+    """
+
+    notes: tuple[str, ...] = ()
 
     def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
         """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
@@ -51,6 +63,7 @@ def stipple(
     first_dots: str = "pulse-density",
     growth: str = "circular",
     start: str = "top",
+    sizes: str = "tone",
     weighted: bool = True,
     pen: str = DEFAULT_PEN,
 ) -> Drawing:
@@ -75,11 +88,12 @@ def stipple(
         Whether ink replaces the picture's light or its encoded values.
     first_dots : str
         One of `stippler.stippling.plan.FIRST_DOTS`.
-
     growth : {"circular", "triangular"}
         How the regions of pulse-density modulation grow.
     start : {"top", "border"}
         Where pulse-density modulation begins.
+    sizes : {"tone", "regions"}
+        Sizes that meet the tone, or the paper's: by how far pulse-density regions had to grow.
     weighted : bool
         Relax by the tone; False is the paper's form, whose light parts fill up.
     pen : str
@@ -108,10 +122,11 @@ def stipple(
         first_dots=first_dots,
         growth=growth,
         start=start,
+        sizes=sizes,
         weighted=weighted,
         pen=pen,
     )
-    return draw(image, plan, tone=tone, width_mm=width)[0]
+    return draw(image, plan, tone=tone, width_mm=width)
 
 
 def draw(
@@ -121,21 +136,30 @@ def draw(
     tone: str,
     width_mm: float,
     show: Callable[[str, int, int], None] | None = None,
-) -> tuple[Drawing, tuple[str, ...]]:
-    """Carry out a plan; return the drawing and what the person should know about it."""
+) -> Drawing:
+    """Carry out a plan."""
     reference = Reference(_darkness(image, tone), width_mm)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
             show(last.stage, last.done, last.total)
     assert last is not None, "stages() yields at least its end"
-    return Drawing.from_reference(
+    drawing = Drawing.from_reference(
         reference, last.position_mm, last.radius_mm, _style(last.radius_mm, plan)
-    ), notes_on(last)
+    )
+    drawing.notes = notes_on(last)
+    return drawing
 
 
 def pulse_density(
-    image: Any, dots: int = 20_000, *, tone: Tone = "linear"
+    image: Any,
+    dots: int = 20_000,
+    *,
+    tone: Tone = "linear",
+    area: Any = None,
+    growth: str = "circular",
+    start: str = "top",
+    seed: int = 1,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Halftone a picture into dots by pulse-density modulation, without relaxation.
 
@@ -145,6 +169,10 @@ def pulse_density(
         As for `stipple`.
     dots : int
         How many; met within 1 %.
+    tone, growth, start, seed
+        As for `stipple`.
+    area : shapely Polygon or MultiPolygon, or (m, 2) array, px, optional
+        Only what lies inside gets dots; with ``start="border"`` they line up with its outline.
 
     Returns
     -------
@@ -158,7 +186,33 @@ def pulse_density(
     """
     from stippler.stippling.stipple import pulse_density as halftone
 
-    return halftone(_darkness(image, tone), dots=dots)
+    inside = None if area is None else _polygon(area)
+    return halftone(
+        _darkness(image, tone), dots=dots, growth=growth, start=start, seed=seed, area=inside
+    )
+
+
+def fill(
+    area: Any, n: int, arrangement: str = "hexagonal", *, seed: int = 1
+) -> NDArray[np.float64]:
+    """Fill an area with dots, without a picture.
+
+    Parameters
+    ----------
+    area : shapely Polygon or MultiPolygon, or (m, 2) array
+    n : int
+        How many; a hexagonal grid has about so many.
+    arrangement : {"hexagonal", "random"}
+    seed : int
+        Chooses the random ones.
+
+    Returns
+    -------
+    (k, 2) float64, in the area's unit
+    """
+    from stippler.stippling.starts import fill_area
+
+    return fill_area(_polygon(area), n, arrangement, seed)
 
 
 def relax(points: ArrayLike, polygon: Any, *args: Any, **kwargs: Any) -> NDArray[np.float64]:
@@ -166,6 +220,19 @@ def relax(points: ArrayLike, polygon: Any, *args: Any, **kwargs: Any) -> NDArray
     from stippler.stippling.relax import relax as run
 
     return run(points, polygon, *args, **kwargs)
+
+
+def _polygon(area: Any) -> Polygon | MultiPolygon:
+    from shapely.geometry import MultiPolygon, Polygon
+
+    if isinstance(area, Polygon | MultiPolygon):
+        return area
+    corners = np.asarray(area, np.float64)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
+        raise GeometryError(
+            f"has shape {corners.shape}", "area", "give a shapely polygon or (m, 2) corners"
+        )
+    return Polygon(corners)
 
 
 def _darkness(image: Any, tone: str) -> NDArray[np.float32]:

@@ -52,6 +52,12 @@ Growth = Annotated[
     str, typer.Option(metavar="circular|triangular", help="How pulse-density regions grow.")
 ]
 Start = Annotated[str, typer.Option(metavar="top|border", help="Where pulse-density begins.")]
+Sizes = Annotated[
+    str,
+    typer.Option(
+        metavar="tone|regions", help="Dot sizes solved for the tone, or the paper's by region."
+    ),
+]
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
@@ -110,6 +116,7 @@ def edit(
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
     start: Start = "top",
+    sizes: Sizes = "tone",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -122,6 +129,7 @@ def edit(
         first_dots=first_dots,
         growth=growth,
         start=start,
+        sizes=sizes,
         weighted=not unweighted,
         pen=pen,
     )
@@ -152,6 +160,7 @@ def render(
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
     start: Start = "top",
+    sizes: Sizes = "tone",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -168,6 +177,7 @@ def render(
         first_dots=first_dots,
         growth=growth,
         start=start,
+        sizes=sizes,
         weighted=not unweighted,
         pen=pen,
     )
@@ -178,11 +188,11 @@ def render(
         from stippler.api import draw
 
         show("picture", 0, 1)
-        drawing, notes = draw(file, plan, tone=tone, width_mm=width, show=show)
+        drawing = draw(file, plan, tone=tone, width_mm=width, show=show)
         show("write", 0, 1)
         drawing.save(output, dpi=dpi)
         show("write", 1, 1)
-    for note in notes:
+    for note in drawing.notes:
         typer.echo(f"stippler: {file}: {note}", err=True)
 
 

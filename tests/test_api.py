@@ -144,3 +144,33 @@ def test_importing_imports_nothing_else():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert result.stdout == "False\n"
+
+
+def test_an_area_is_filled_without_a_picture():
+    square = [(0, 0), (30, 0), (30, 30), (0, 30)]
+    for arrangement in ("hexagonal", "random"):
+        points = stippler.fill(square, 200, arrangement, seed=4)
+        assert abs(len(points) - 200) <= 8
+        assert ((points >= 0) & (points <= 30)).all()
+    assert len(stippler.fill(Polygon(square), 0)) == 0
+    for wrong in ({"area": [1, 2]}, {"area": square, "arrangement": "neat"},
+                  {"area": square, "n": -1}, {"area": square[:2]}):  # fmt: skip
+        with pytest.raises(stippler.StipplerError):
+            stippler.fill(**{"n": 5, **wrong})
+
+
+def test_pulses_in_an_area_given_by_its_corners():
+    corners = [(10, 10), (70, 10), (40, 70)]
+    points, _ = stippler.pulse_density(np.full((80, 80), 0.5), 300, area=corners, start="border")
+    assert abs(len(points) - 300) <= 6
+    assert points[:, 1].max() < 70
+
+
+def test_what_a_drawing_falls_short_of_is_told():
+    drawing = stippler.stipple(np.zeros((20, 20)), 30, 20, size_range=(0.2, 0.4), iterations=2)
+    assert "too dark" in " ".join(drawing.notes)
+    assert "between 0.0, 0.0 and 20.0, 20.0 mm" in " ".join(drawing.notes)
+    assert stippler.stipple(disc(), 300, 20, iterations=2).notes == ()
+    crowded = stippler.stipple(disc(), 10**5, 20, size_range=(0.2, 0.4), iterations=0)
+    assert "100,000 dots fit" in " ".join(crowded.notes)
+    assert 0 < len(crowded.dots) < 10**5

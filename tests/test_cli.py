@@ -84,6 +84,7 @@ def test_another_seed_is_another_drawing(picture, tmp_path):
 
 def test_every_way_of_making_is_another_drawing(picture, tmp_path):
     ways = [[], ["--growth", "triangular"], ["--start", "border"], ["--unweighted"],
+            ["--sizes", "regions"],
             ["--first-dots", "floyd-steinberg"], ["--first-dots", "random"],
             ["--first-dots", "hexagonal"], ["--tone", "perceptual"],
             ["--pen", "brush"]]  # fmt: skip

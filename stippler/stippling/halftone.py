@@ -19,14 +19,18 @@ from stippler.errors import ParameterError
 from stippler.kernels.pulse_density import fill_cells, grow
 from stippler.kernels.seeds import chamfer, order_by_distance, outside_polygon
 from stippler.stippling.plan import GROWTHS, STARTS
+from stippler.stippling.tone import Rule
 
 CELLS_PER_DOT = 14.0
 """Super-sampling aims at this many cells in the smallest region."""
 
+ENLARGED, REDUCED, DROPPED = 0.75, 0.25, 0.02
+"""Darkness at which the paper's thresholds for the size of a region lie."""
+
 _REACH = 200  # cells; the farthest a region looks for its charge
 _SEEDS_AT_ONCE = 250_000
 _VARIANTS = 8
-_SKEW = {"circular": 0.8, "triangular": 0.25}
+_SKEW = {"circular": 0.9, "triangular": 0.25}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,8 +94,13 @@ def pulse_density(
         yield stop / max(n_seeds, 1), FirstDots(points[:n] / s, areas[:n] / np.float32(s * s))
 
 
+def outside_area(field: NDArray[np.float32], area: Polygon | MultiPolygon) -> None:
+    """Set what lies outside a polygon, in pixels, to exactly 0."""
+    outside_polygon(_edges(area), field)
+
+
 def sizes_by_region(
-    region_px: NDArray[np.float32], radius_px: float, small: float, large: float, omit: float
+    region_px: NDArray[np.float32], rule: Rule
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Size dots of one pulse as the paper does: by how far their regions had to grow.
 
@@ -99,23 +108,26 @@ def sizes_by_region(
     ----------
     region_px : (n,) float32
         Area of each dot's region.
-    radius_px : float
-        Radius of an ordinary dot; none gets larger than its root-2-fold, or smaller than half
-        of that.
-    small, large : float
-        Dots with a region below `small` are enlarged, above `large` reduced.
-    omit : float
-        Dots with a region above this are dropped; the region stays used.
+    rule : Rule
+        Even, in pixels: the radius of an ordinary dot, and the range that none leaves.
 
     Returns
     -------
     radius_px : (n,) float64
     keep : (n,) bool
+
+    Notes
+    -----
+    Dots with a region below that of the darkness `ENLARGED` are enlarged, above that of
+    `REDUCED` reduced, above that of `DROPPED` dropped; the region stays used.
     """
+    levels = np.array([ENLARGED, REDUCED, DROPPED])
+    small, large, omit = 1.0 / np.maximum(rule.density(levels), 1e-300)
+    radius = float(rule.radius(levels)[0])
     region = np.asarray(region_px, np.float64)
     scale = np.sqrt(np.where(region < small, small, np.where(region > large, large, region)))
     scale = np.where((region < small) | (region > large), scale / np.sqrt(region), 1.0)
-    return radius_px * np.clip(scale, math.sqrt(0.5), math.sqrt(2.0)), region <= omit
+    return np.clip(radius * scale, rule.radius_min, rule.radius_max), region <= omit
 
 
 def supersampling(density: NDArray[np.float32]) -> int:

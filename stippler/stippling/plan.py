@@ -16,6 +16,12 @@ GROWTHS = ("circular", "triangular")
 STARTS = ("top", "border")
 """Where the first region lies: seeds in raster order, or from the border inwards."""
 
+SIZES = ("tone", "regions")
+"""Dot sizes: solved for the tone, or as the paper has them, by how far regions had to grow."""
+
+ARRANGEMENTS = ("hexagonal", "random")
+"""How an area is filled where there is no picture."""
+
 DEFAULT_DOTS = 20_000
 DEFAULT_PEN = "technical-pen"
 MAX_DOTS = 20_000_000
@@ -40,6 +46,9 @@ class Plan:
         Order in which pulse-density regions take cells.
     start : {"top", "border"}
         Where pulse-density begins.
+    sizes : {"tone", "regions"}
+        "regions" is the paper's modified pulse-density modulation: dots of small regions are
+        enlarged, of large ones reduced, of still larger ones dropped.
     weighted : bool
         Relax by the wanted density; False is the paper's unweighted form.
     pen : str
@@ -53,6 +62,7 @@ class Plan:
     first_dots: str = "pulse-density"
     growth: str = "circular"
     start: str = "top"
+    sizes: str = "tone"
     weighted: bool = True
     pen: str = DEFAULT_PEN
 
@@ -79,9 +89,14 @@ class Plan:
             ("first dots", self.first_dots, FIRST_DOTS),
             ("growth", self.growth, GROWTHS),
             ("start", self.start, STARTS),
+            ("sizes", self.sizes, SIZES),
         ):
             if value not in known:
                 raise ParameterError(f"{value!r} is unknown", name, f"one of {', '.join(known)}")
+        if self.sizes == "regions" and self.first_dots != "pulse-density":
+            raise ParameterError(
+                f"{self.first_dots} has no regions", "sizes", "take pulse-density, or sizes by tone"
+            )
         if self.pen != DEFAULT_PEN:
             from stippler.drawing.pens import pen_named
 

@@ -57,8 +57,9 @@ class Sheet:
         n_dots: int | None,
         size_range_mm: tuple[float, float] | None,
         bleeds: bool,
+        faintest: float | None = None,
     ) -> Sheet:
-        """Prepare a reference for so many dots or dots of such sizes."""
+        """Prepare a reference for so many dots or dots of such sizes; `faintest` as in a rule."""
         width, height = reference.width_mm, reference.height_mm
         guess = n_dots or _number_for(reference, size_range_mm)
         darkness, scale = _at_resolution(reference.darkness, guess)
@@ -70,17 +71,18 @@ class Sheet:
         if bleeds and guess >= _MIN_DOTS and _border(darkness).any():
             bleed = math.ceil(_BLEED * math.sqrt(darkness.size / guess))
         border = _border(darkness) if bleed else darkness[0, :0]
-        rule = rule_for(darkness, n_dots, size_px, border)
+        rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
         return cls(darkness, bleed, rule, pixel_mm, (width, height))
 
     def density(self) -> NDArray[np.float32]:
         """Dots per square pixel, bleed included; white stays exactly 0."""
         levels = np.linspace(0.0, 1.0, 4097)
         table = self.rule.density(levels)
-        density = np.interp(self.darkness, levels, table).astype(np.float32)
-        if self.bleed:
-            density = np.pad(density, self.bleed, mode="symmetric")
-        return density
+        return self.with_bleed(np.interp(self.darkness, levels, table).astype(np.float32))
+
+    def with_bleed(self, field: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Repeat a field of the page in the bleed, mirrored."""
+        return np.pad(field, self.bleed, mode="symmetric") if self.bleed else field
 
     def outline_mm(self) -> NDArray[np.float64]:
         """Corners of the sheet, bleed included; the page's top left is the origin."""
@@ -113,10 +115,20 @@ class Sheet:
 
     def radii(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the radius that the rule gives each dot of the page."""
+        return self.rule.radius(self._under(points))
+
+    def wanted_at(
+        self, points: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the radius and the density that the rule gives where each dot of the page lies."""
+        values = self._under(points)
+        return self.rule.radius(values), self.rule.density(values)
+
+    def _under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
         values = np.empty(len(points), np.float32)
         points = np.ascontiguousarray(points)
         run_ranges(sample, len(points), points, self.darkness, values)
-        return self.rule.radius(values)
+        return values
 
     def onto_ink(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Move dots off pixels that are white, to the nearest that is not."""

@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.errors import GeometryError, ParameterError
 from stippler.kernels.pulse_density import diffuse
+from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
 
 _NO_DOTS = np.empty((0, 2))
 
@@ -66,6 +67,17 @@ def hexagonal(density: NDArray[np.float32]) -> NDArray[np.float64]:
     )
 
 
+def fill_area(
+    area: Polygon | MultiPolygon, n: int, arrangement: str, seed: int
+) -> NDArray[np.float64]:
+    """Fill a polygon with n dots in one of the `ARRANGEMENTS`; see `random_in`."""
+    if arrangement not in ARRANGEMENTS:
+        raise ParameterError(
+            f"{arrangement!r} is unknown", "arrangement", f"one of {', '.join(ARRANGEMENTS)}"
+        )
+    return hexagonal_in(area, n) if arrangement == "hexagonal" else random_in(area, n, seed)
+
+
 def random_in(area: Polygon | MultiPolygon, n: int, seed: int) -> NDArray[np.float64]:
     """Draw n independent dots in a polygon.
 
@@ -116,11 +128,16 @@ def hexagonal_in(area: Polygon | MultiPolygon, n: int) -> NDArray[np.float64]:
     return _fitted(n, math.sqrt(2.0 / math.sqrt(3.0) * area.area / n), inside)
 
 
-def _check(area: Polygon | MultiPolygon, n: int) -> None:
-    if n < 0:
-        raise ParameterError(f"{n} dots cannot be drawn", "dots", "give 0 or more")
+def check_area(area: Polygon | MultiPolygon) -> None:
+    """Refuse a polygon that has no inside."""
     if area.is_empty or not area.is_valid or not area.area > 0:
         raise GeometryError("is no valid polygon", "area", "give one with an inside")
+
+
+def _check(area: Polygon | MultiPolygon, n: int) -> None:
+    if not 0 <= n <= MAX_DOTS:
+        raise ParameterError(f"{n} dots cannot be drawn", "dots", f"give 0 to {MAX_DOTS:,}")
+    check_area(area)
 
 
 def _fitted(

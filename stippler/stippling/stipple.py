@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import affinity
+from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.reference import Reference
+from stippler.stippling.finish import at_edge, even_rim, part_close
+from stippler.stippling.halftone import DROPPED, outside_area, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
+from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
-from stippler.stippling.starts import floyd_steinberg, hexagonal, random_dots
-from stippler.stippling.tone import Shortfall, shortfall, solve_radii
+from stippler.stippling.starts import check_area, floyd_steinberg, hexagonal, random_dots
+from stippler.stippling.tone import Shortfall, shortfall
+
+if TYPE_CHECKING:
+    from stippler.stippling.density import DensityField
+
+_LAST_STEPS = 5  # weighted by the darkness itself
+_GIVES = (0.6, 0.3, 0.2, 0.1)  # how far a dot may move across the page's edge, in its radius
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +74,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         The last one has the stage "done".
     """
     sheet = sheet_for(reference, plan)
+    if plan.sizes == "regions":
+        yield from _stages_by_region(sheet, plan, snapshots)
+        return
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
 
     def snapshot(
@@ -81,14 +96,44 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
-    points = sheet.onto_ink(sheet.trim(points, plan.n_dots))
+    points = sheet.trim(points, plan.n_dots)
+    if plan.weighted and plan.iterations:
+        for share, finished in _finish(sheet, points):
+            points = finished
+            yield snapshot("tone", round(200 * share), 1000, points)
+    points = sheet.onto_ink(points)
     radii = np.empty(0)
     for share, solved in solve_radii(points, sheet.darkness, sheet.rule):
         radii = solved
         if share < 1.0:
-            yield snapshot("tone", round(1000 * share), 1000, points)
+            yield snapshot("tone", round(200 + 800 * share), 1000, points)
     lack = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_dots)
     yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=lack)
+
+
+def _stages_by_region(sheet: Sheet, plan: Plan, snapshots: bool) -> Iterator[Progress]:
+    """Draw as the paper does: sizes follow from the regions, and stay with their dots."""
+
+    def snapshot(
+        stage: str, done: int, total: int, px: NDArray[np.float64], radii: NDArray[np.float64],
+        movement_mm: float = math.nan,
+    ) -> Progress:  # fmt: skip
+        n = len(px) if snapshots else 0
+        return Progress(stage, done, total, *sheet.on_page(px[:n], radii[:n]), movement_mm)
+
+    points, radii = np.empty((0, 2)), np.empty(0)
+    yield snapshot("first dots", 0, 1000, points, radii)
+    for share, first in pulses(sheet.density(), plan.growth, start=plan.start, seed=plan.seed):
+        radii, keep = sizes_by_region(first.region_px, sheet.rule)
+        points, radii = first.position_px[keep], radii[keep]
+        yield snapshot("first dots", round(1000 * share), 1000, points, radii)
+    if len(points) and plan.iterations:
+        for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
+            points = moved
+            yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
+    points = sheet.onto_ink(sheet.trim(points, None))
+    notes = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_dots).notes
+    yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=Shortfall(notes=notes))
 
 
 def notes_on(result: Progress) -> tuple[str, ...]:
@@ -98,9 +143,13 @@ def notes_on(result: Progress) -> tuple[str, ...]:
         return ()
     notes = list(lack.notes)
     if lack.share > 0.0005:
+        where = ""
+        if lack.box_mm is not None:
+            x0, y0, x1, y1 = lack.box_mm
+            where = f", between {x0:.1f}, {y0:.1f} and {x1:.1f}, {y1:.1f} mm"
         notes.append(
             f"{100 * lack.share:.1f} % of the page is too dark for these dots "
-            f"(by {lack.missing:.2f} of 1); allow larger dots, or more of them"
+            f"(by {lack.missing:.2f} of 1{where}); allow larger dots, or more of them"
         )
     return tuple(notes)
 
@@ -112,6 +161,7 @@ def pulse_density(
     growth: str = "circular",
     start: str = "top",
     seed: int = 1,
+    area: Polygon | MultiPolygon | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Place first dots by pulse-density modulation, without relaxation.
 
@@ -123,6 +173,8 @@ def pulse_density(
     growth : {"circular", "triangular"}
     start : {"top", "border"}
     seed : int
+    area : polygon in pixels, optional
+        Only what lies inside gets dots.
 
     Returns
     -------
@@ -131,10 +183,34 @@ def pulse_density(
         By the rule for radius and density; not solved for the tone.
     """
     plan = Plan(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
-    sheet = sheet_for(Reference(darkness, float(darkness.shape[1])), plan)
+    reference = Reference(darkness, float(darkness.shape[1]))
+    if area is not None:
+        return _pulses_inside(reference, plan, area)
+    sheet = sheet_for(reference, plan)
     *_, (_, points) = _first_dots(sheet, plan)
     points = sheet.onto_ink(sheet.trim(points, None))
     return points * sheet.pixel_mm, sheet.radii(points) * sheet.pixel_mm
+
+
+def _pulses_inside(
+    reference: Reference, plan: Plan, area: Polygon | MultiPolygon
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Place the number of dots that the plan asks for in an area of the reference alone."""
+    check_area(area)
+    field = np.array(reference.darkness)
+    outside_area(field, area)
+    if not field.any():
+        return np.empty((0, 2)), np.empty(0)
+    sheet = sheet_for(
+        Reference(field, reference.width_mm), plan
+    )  # so sized that n dots fill the area
+    whole = replace(sheet_for(reference, plan), rule=sheet.rule)
+    inside = affinity.scale(area, 1 / whole.pixel_mm, 1 / whole.pixel_mm, origin=(0.0, 0.0))
+    *_, (_, first) = pulses(
+        whole.density(), plan.growth, start=plan.start, seed=plan.seed, inside=inside
+    )
+    points = first.position_px
+    return points * whole.pixel_mm, whole.radii(points) * whole.pixel_mm
 
 
 def sheet_for(reference: Reference, plan: Plan) -> Sheet:
@@ -142,7 +218,14 @@ def sheet_for(reference: Reference, plan: Plan) -> Sheet:
     n_dots = plan.n_dots
     if n_dots is None and plan.size_range_mm is None:
         n_dots = DEFAULT_DOTS
-    return Sheet.of(reference, n_dots, plan.size_range_mm, bleeds=plan.weighted)
+    by_region = plan.sizes == "regions"
+    return Sheet.of(
+        reference,
+        n_dots,
+        plan.size_range_mm,
+        bleeds=plan.weighted and not by_region,
+        faintest=DROPPED if by_region else None,
+    )
 
 
 def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.float64]]]:
@@ -166,18 +249,54 @@ def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.fl
 def _relax(
     sheet: Sheet, plan: Plan, points: NDArray[np.float64]
 ) -> Iterator[tuple[NDArray[np.float64], float]]:
-    """Run Lloyd steps, weighted by the square of the density, since dots settle at its root.
-
-    The paper's form weighs all ink alike; white weighs nothing in either, and draws no dots.
-    """
-    from stippler.stippling.relax import DensityField, Relaxation
+    """Run Lloyd steps on the whole sheet; yield points in pixels and their mean movement in mm."""
+    from stippler.stippling.relax import Relaxation
 
     outline = sheet.outline_mm()
-    density = sheet.density()
-    weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
-    field = DensityField(weight, sheet.pixel_mm, (float(outline[0, 0]), float(outline[0, 1])))
-    at = np.clip(points * sheet.pixel_mm, outline[0], outline[2])
-    engine = Relaxation(at, outline, density=field)
-    for _ in range(plan.iterations):
-        report = engine.step()
-        yield np.asarray(engine.points) / sheet.pixel_mm, float(report.mean_mm)
+    for n_steps, field in step_weights(sheet, plan):
+        at = np.clip(points * sheet.pixel_mm, outline[0], outline[2])
+        engine = Relaxation(at, outline, density=field)
+        for _ in range(n_steps):
+            report = engine.step()
+            points = np.asarray(engine.points) / sheet.pixel_mm
+            yield points, float(report.mean_mm)
+
+
+def step_weights(sheet: Sheet, plan: Plan, n_done: int = 0) -> Iterator[tuple[int, DensityField]]:
+    """Yield how many steps are left after those that are done, and by what they are weighted.
+
+    By the square of the density, since dots settle at its root. The last steps are weighted by
+    the darkness itself: each dot then lies in the midst of the ink that its cell asks for, and
+    fine detail is drawn where it is; its size makes up for the density that is lost, so dots of
+    one size do without. The paper's form weighs all ink alike; white weighs nothing in any form,
+    and draws no dots.
+    """
+    from stippler.stippling.density import DensityField
+
+    x, y = sheet.outline_mm()[0]
+    solved = plan.weighted and plan.sizes == "tone" and sheet.rule.varies
+    n_last = min(_LAST_STEPS, plan.iterations // 3) if solved else 0
+    n_first = plan.iterations - n_last - n_done
+    if n_first > 0:
+        density = sheet.density()
+        weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
+        yield n_first, DensityField(weight, sheet.pixel_mm, (float(x), float(y)))
+    n_last = min(n_last, plan.iterations - n_done)
+    if n_last > 0:
+        weight = sheet.with_bleed(sheet.darkness)
+        yield n_last, DensityField(weight, sheet.pixel_mm, (float(x), float(y)))
+
+
+def _finish(
+    sheet: Sheet, points: NDArray[np.float64]
+) -> Iterator[tuple[float, NDArray[np.float64]]]:
+    """Part dots that lie too close, and even out the ink along the edge of a page that bleeds."""
+    points = part_close(points, sheet)
+    yield 0.2, points
+    if not sheet.bleed:
+        return
+    for k, give in enumerate(_GIVES):
+        points = even_rim(points, sheet, give)
+        yield 0.2 + 0.8 * (k + 0.5) / len(_GIVES), points
+        points = part_close(points, sheet, at_edge(points, sheet))
+        yield 0.2 + 0.8 * (k + 1) / len(_GIVES), points

@@ -7,7 +7,6 @@ the darkness; neither is scaled by it alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -15,17 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
-from stippler.kernels.grid import sort_by_grid_cell
-from stippler.kernels.pool import run_ranges
-from stippler.kernels.tone import (
-    MAX_CORNERS,
-    build_cells,
-    find_room,
-    fit_radii,
-    pass_on,
-    sum_darkness,
-    sum_room,
-)
 
 _COVERAGE = np.array([0.0, 0.8, 0.85, 0.9, 0.95, 0.98, 0.99, 1.0])
 _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
@@ -33,10 +21,7 @@ _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
 for relaxed dots of locally equal size."""
 
 _BINS = 1024
-_DOTS_AT_ONCE = 8_000
-_ROUNDS = 4  # of passing on ink that a dot cannot lay down
-_ENOUGH = 2e-4  # share of all ink that need not be passed on
-_REACH = 7.0  # mean spacings; a cell reaches no farther from its dot to any side
+_VARIES = 1.3
 
 
 def ink_for(darkness: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -57,15 +42,23 @@ class Rule:
         Multiplies the radius that the rule would choose, before it is clamped to the range.
     thin : float
         Multiplies the density; below 1 where even the largest dots are too few.
+    even : bool
+        One radius for every darkness, the geometric middle of the range.
     """
 
     radius_min: float
     radius_max: float
     scale: float = 1.0
     thin: float = 1.0
+    even: bool = False
 
     BLEED_REACH: ClassVar[float] = 0.75
     """A dot beyond the page's edge is kept if it is nearer than this share of its radius."""
+
+    @property
+    def varies(self) -> bool:
+        """Whether sizes can carry tone."""
+        return self.radius_max > _VARIES * self.radius_min
 
     def radius(self, darkness: NDArray[np.floating]) -> NDArray[np.float64]:
         """Return the radius for a darkness: small up to the middle tones, large in the dark.
@@ -75,6 +68,9 @@ class Rule:
         range are kept free, so that solving the tone can still go either way.
         """
         low, high = self.radius_min, self.radius_max
+        if self.even:
+            middle = self.scale * math.sqrt(low * high)
+            return np.full(np.shape(darkness), min(max(middle, low), high))
         share = 0.06 + 0.88 * np.asarray(darkness, np.float64) ** 3
         radius: NDArray[np.float64] = np.clip(self.scale * (low + share * (high - low)), low, high)
         return radius
@@ -118,6 +114,8 @@ def rule_for(
     size_range: tuple[float, float] | None,
     border: NDArray[np.float32],
     ratio: float = 2.0,
+    *,
+    faintest: float | None = None,
 ) -> Rule:
     """Choose radii and density for a picture; lengths in pixels.
 
@@ -129,20 +127,25 @@ def rule_for(
         None: a range of 1:`ratio` that meets the tone with `n_dots`.
     border : (m,) float32
         Darkness of the pixels along the page's edge, if there is a bleed.
+    faintest : float, optional
+        Given for dots of one radius, of which those on lighter pixels than this are not counted.
     """
     levels, rim = _histogram(darkness), _histogram(border)
+    even = faintest is not None
+    if faintest is not None:
+        levels = levels[0] * (levels[1] >= faintest), levels[1]
     if size_range is not None:
-        rule = Rule(*size_range)
+        rule = Rule(*size_range, even=even)
         return rule if n_dots is None else _scaled(rule, levels, rim, n_dots)
     if n_dots is None:
         raise ParameterError("neither a number nor a size is given", "dots")
-    unit = Rule(1.0, ratio)
+    unit = Rule(1.0, ratio, even=even)
     area = float(levels[0] @ unit.density(levels[1]))
     length = float(rim[0] @ unit.per_border(rim[1]))
     if not area > 0:
         return unit
     low = (length + math.sqrt(length**2 + 4.0 * n_dots * area)) / (2.0 * n_dots)
-    return Rule(low, low * ratio)
+    return Rule(low, low * ratio, even=even)
 
 
 _Levels = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -174,129 +177,6 @@ def _scaled(rule: Rule, levels: _Levels, rim: _Levels, n_dots: int) -> Rule:
     there = number(high)
     thin = min(1.0, n_dots / there) if there > 0 else 1.0
     return replace(rule, scale=high, thin=thin)
-
-
-def solve_radii(
-    points: NDArray[np.float64], darkness: NDArray[np.float32], rule: Rule
-) -> Iterator[tuple[float, NDArray[np.float64]]]:
-    """Find radii at which the union of the discs meets the darkness.
-
-    Every dot lays down the ink that its Voronoi cell asks for; what the range of the rule does
-    not allow is passed on to its neighbours, as far as `_ROUNDS` cells away.
-
-    Parameters
-    ----------
-    points : (n, 2) float64, pixels of `darkness`
-    darkness : (h, w) float32, read-only
-    rule : Rule
-        Its range of radii, in pixels.
-
-    Yields
-    ------
-    share : float
-        Of the work done.
-    radii : (n,) float64, pixels
-        Found once the share is 1.
-
-    Notes
-    -----
-    O(n); the same bits for any number of threads.
-    """
-    n = len(points)
-    result = np.empty(n)
-    if n == 0:
-        yield 1.0, result
-        return
-    low, high = rule.radius_min, rule.radius_max
-    order, cell_start, frame = _grid(points, darkness)
-    cells = _Cells(n)
-    for share in cells.build(points[order], cell_start, frame, darkness):
-        yield 0.8 * share, result
-    yield 0.8, result
-    cells.fit(low, high)
-    for k in range(_ROUNDS):
-        if np.abs(cells.left).sum() <= _ENOUGH * cells.asked.sum():
-            break
-        yield 0.8 + 0.1 * k / _ROUNDS, result
-        cells.even_out(low, high)
-        cells.fit(low, high)
-    result[order] = cells.radii
-    yield 1.0, result
-
-
-class _Cells:
-    """The cells of sorted dots, and the ink that each asks for."""
-
-    def __init__(self, n: int) -> None:
-        self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
-        self.beyond = np.empty((n, MAX_CORNERS), np.int32)
-        self.n_corners = np.empty(n, np.uint8)
-        self.asked, self.before = np.empty(n), np.full(n, -1.0)
-        self.radii, self.left = np.empty(n), np.empty(n)
-
-    def build(
-        self,
-        xy: NDArray[np.float64],
-        cell_start: NDArray[np.int32],
-        frame: NDArray[np.float64],
-        darkness: NDArray[np.float32],
-    ) -> Iterator[float]:
-        """Build the cells of dots sorted by grid cell; yield the share done."""
-        n, (h, w) = len(xy), darkness.shape
-        sums = np.empty((h, w + 1, 2))
-        run_ranges(sum_darkness, h, darkness, sums, grain=64)
-        yield 0.0
-        results = self.corners, self.beyond, self.n_corners, self.asked
-        for first in range(0, n, _DOTS_AT_ONCE):
-            last = min(first + _DOTS_AT_ONCE, n)
-
-            def part(start: int, stop: int, first: int = first) -> None:
-                build_cells(first + start, first + stop, xy, cell_start, frame, sums, *results)
-
-            run_ranges(part, last - first)
-            yield last / n
-
-    def fit(self, low: float, high: float) -> None:
-        """Find radii within a range, and the ink `left` that it does not allow."""
-        run_ranges(
-            fit_radii,
-            len(self.asked),
-            self.corners,
-            self.n_corners,
-            self.asked,
-            self.before,
-            low,
-            high,
-            self.radii,
-            self.left,
-        )
-        self.before = self.asked
-
-    def even_out(self, low: float, high: float) -> None:
-        """Ask neighbours for the ink that a dot's range does not allow."""
-        n, corners, beyond, count = len(self.asked), self.corners, self.beyond, self.n_corners
-        room, given, new = np.empty((n, 2)), np.empty(n), np.empty(n)
-        run_ranges(find_room, n, corners, beyond, count, low, high, self.radii, self.left, room)
-        run_ranges(sum_room, n, beyond, count, self.left, room, given)
-        run_ranges(pass_on, n, beyond, count, room, given, self.asked, new)
-        self.asked = new
-
-
-def _grid(
-    points: NDArray[np.float64], darkness: NDArray[np.float32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
-    """Sort dots into a uniform grid; return the order, each grid cell's start, and the frame."""
-    n, (h, w) = len(points), darkness.shape
-    inked = max(float(np.count_nonzero(darkness[::4, ::4])) * 16.0, 0.05 * h * w)
-    side = max(math.sqrt(1.2 * min(inked, h * w) / n), max(h, w) / 30_000)
-    columns, rows = max(1, math.ceil(w / side)), max(1, math.ceil(h / side))
-    column = np.minimum((points[:, 0] / side).astype(np.int32), columns - 1)
-    row = np.minimum((points[:, 1] / side).astype(np.int32), rows - 1)
-    cell_start = np.zeros(columns * rows + 1, np.int32)
-    order = np.empty(n, np.int32)
-    sort_by_grid_cell(row * np.int32(columns) + column, cell_start, order)
-    half = _REACH * math.sqrt(h * w / n)
-    return order, cell_start, np.array([w, h, side, columns, rows, half], np.float64)
 
 
 def shortfall(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.errors import ParameterError
+from stippler.stippling.fill import Filling, fill_drawing
 from stippler.ui import work
 from stippler.ui.exports import Exports
 from stippler.ui.messages import ERROR, WARNING, Messages
@@ -66,6 +67,8 @@ class Session:
         The drawing's dots, once they can be edited.
     position_mm, radius_mm : arrays or None
         The dots of a job that makes new ones; None when there is no such job.
+    filling : Filling
+        How a page without a picture is filled next.
     revision : int
         Grows whenever the dots to show, the page or the reference change.
     exports : Exports
@@ -96,6 +99,7 @@ class Session:
         self.position_mm: NDArray[np.float64] | None = None
         self.radius_mm: NDArray[np.float32] | None = None
         self.revision = 0
+        self.filling = Filling()
         self.messages = Messages(clock)
         self.exports = Exports(exporter, self.messages)
         self.phase: Phase = "empty"
@@ -158,12 +162,22 @@ class Session:
         n_done = self.done if self.stage == "relax" else plan.iterations
         self._keep_dots()
         assert self.editing is not None
-        place = self.editing.begin_run("Settle").position_mm
-        self._run(phase, "relax", lambda: work.carry_on(reference, plan, place, n_done))
+        dots = self.editing.begin_run("Settle")
+        place, radius = dots.position_mm, dots.radius_mm
+        self._run(phase, "relax", lambda: work.carry_on(reference, plan, place, radius, n_done))
         self.done, self.total = n_done, plan.iterations
         if phase == "paused":
             self._worker.pause()
         return True
+
+    def fill(self) -> None:
+        """Fill the page with dots, as one step."""
+        editing = self.editing
+        if editing is None or self.drawing is None or not self.paintable or editing.in_stroke:
+            self.messages.say("there is no page to fill yet", WARNING)
+            return
+        n_dots = fill_drawing(self.drawing, editing, self.filling)
+        self.messages.say(f"{n_dots:,} dots added")
 
     def undo(self) -> None:
         """Take the last step back; a relaxation that goes on ends and is taken back."""

@@ -138,15 +138,19 @@ def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Itera
 
 
 def carry_on(
-    reference: Reference, plan: Plan, position_mm: NDArray[np.float64], n_done: int
+    reference: Reference,
+    plan: Plan,
+    position_mm: NDArray[np.float64],
+    radius_mm: NDArray[np.float32],
+    n_done: int,
 ) -> Iterator[Work]:
     """Go on with a stippling whose dots have become the drawing's after so many steps."""
     from stippler.stippling.carry_on import carry_on
 
     yield Work("relax", n_done, plan.iterations)
-    for made in carry_on(reference, plan, position_mm, n_done):
-        radius_mm = made.radius_mm if made.stage == "done" else None
-        yield Work(made.stage, made.done, made.total, None, None, made.position_mm, radius_mm)
+    for made in carry_on(reference, plan, position_mm, radius_mm, n_done):
+        solved = made.radius_mm if made.stage == "done" else None
+        yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
 
 
 def _prepared_kernels() -> Iterator[tuple[int, int]]:

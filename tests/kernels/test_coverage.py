@@ -9,8 +9,9 @@ from shapely.geometry import MultiPoint, Point, Polygon, box
 
 from stippler.analysis.tone_error import draw_ink
 from stippler.kernels.ink import onto_ink, sample
-from stippler.kernels.tone import MAX_CORNERS, fit_radii
-from stippler.stippling.tone import _Cells, _grid
+from stippler.kernels.radii import fit_radii
+from stippler.kernels.tone import MAX_CORNERS
+from stippler.stippling.radii import _Cells, sorted_by_place
 
 
 def frozen(field):
@@ -20,7 +21,7 @@ def frozen(field):
 
 
 def cells_of(points, darkness):
-    order, start, frame = _grid(points, darkness)
+    order, start, frame = sorted_by_place(points, darkness, len(points))
     cells = _Cells(len(points))
     for _ in cells.build(points[order], start, frame, darkness):
         pass
@@ -125,7 +126,7 @@ def test_passing_ink_on_loses_none_and_helps(seed, low, ratio):
     cells, _ = cells_of(rng.random((60, 2)) * 20, darkness)
     cells.fit(low, low * ratio)
     asked, missed = cells.asked.sum(), np.abs(cells.left).sum()
-    cells.even_out(low, low * ratio)
+    cells.pass_on(low, low * ratio)
     assert cells.asked.sum() == pytest.approx(asked, rel=1e-6)
     cells.fit(low, low * ratio)
     assert np.abs(cells.left).sum() <= missed * (1 + 1e-6) + 1e-6

@@ -12,7 +12,10 @@ from stippler.analysis.spacing import measure_spacing
 from stippler.analysis.spectrum import measure_spectrum
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.halftone import (
+    DROPPED,
+    ENLARGED,
     GROWTHS,
+    REDUCED,
     STARTS,
     growth_orders,
     pulse_density,
@@ -26,6 +29,7 @@ from stippler.stippling.starts import (
     random_dots,
     random_in,
 )
+from stippler.stippling.tone import Rule
 
 
 def all_dots(density, *args, **kwargs):
@@ -114,10 +118,14 @@ def test_border_start_lines_the_outermost_dots_up():
 
 
 def test_sizes_follow_regions_at_the_thresholds():
-    region = np.array([1, 4, 6, 10, 40, 100, 101], np.float32)
-    radius, keep = sizes_by_region(region, 2.0, small=5, large=10, omit=100)
-    assert radius[2] == radius[3] == 2.0
-    assert radius[0] == radius[1] * radius[0] / radius[1] > radius[1] > 2.0
+    rule = Rule(2.0 / math.sqrt(2), 2.0 * math.sqrt(2), even=True)
+    small, large, omit = 1 / rule.density(np.array([ENLARGED, REDUCED, DROPPED]))
+    region = np.array(
+        [small / 9, 0.9 * small, 1.1 * small, large, 2 * large, 0.99 * omit, 1.01 * omit]
+    )
+    radius, keep = sizes_by_region(region.astype(np.float32), rule)
+    assert radius[2:4] == pytest.approx(2.0)
+    assert radius[0] > radius[1] > 2.0
     assert radius[0] == pytest.approx(2.0 * math.sqrt(2))
     assert radius[4] < 2.0
     assert radius.max() / radius.min() <= 2.0 + 1e-12

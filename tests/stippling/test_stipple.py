@@ -3,15 +3,17 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shapely.geometry import Polygon
 
 from stippler.analysis.tone_error import draw_ink, measure_tone
 from stippler.drawing.reference import Reference
-from stippler.errors import ParameterError
+from stippler.errors import GeometryError, ParameterError
 from stippler.kernels.pool import n_threads, set_threads
 from stippler.stippling.plan import FIRST_DOTS, Plan
-from stippler.stippling.stipple import pulse_density, stages
+from stippler.stippling.stipple import notes_on, pulse_density, stages
 
 
 def finished(darkness, plan, width_mm=None, **options):
@@ -41,7 +43,7 @@ def ramp(h=120, w=160):
         ("size_range_mm", (0.1, math.inf), "size range"),
         ("iterations", -1, "iterations"), ("seed", -1, "seed"),
         ("first_dots", "magic", "first dots"), ("growth", "oval", "growth"),
-        ("start", "middle", "start"),
+        ("start", "middle", "start"), ("sizes", "huge", "sizes"),
     ],
 )  # fmt: skip
 def test_plans_that_make_no_sense_are_refused_by_name(option, value, name):
@@ -64,6 +66,14 @@ def test_stages_come_in_order_and_snapshots_are_frozen():
     assert [order.index(s) for s in seen] == sorted(order.index(s) for s in seen)
     assert set(seen) == set(order)
     assert seen.count("relax") == 4
+
+
+def test_dots_come_while_pulses_are_still_counted():
+    field = np.full((700, 700), 0.5, np.float32)
+    shown = [len(p.position_mm) for p in stages(Reference(field, 70.0), Plan(n_dots=30_000))
+             if p.stage == "first dots" and p.done < p.total]  # fmt: skip
+    assert sorted(shown) == shown
+    assert any(0 < n < 25_000 for n in shown)
 
 
 def test_without_snapshots_only_the_last_has_dots():
@@ -251,3 +261,54 @@ def test_pulses_alone_come_in_pixels():
     assert measure_tone(points, radii, ramp()).bias == pytest.approx(0.0, abs=0.02)
     border, _ = pulse_density(ramp(), 1234, start="border", growth="triangular")
     assert not np.array_equal(points[:50], border[:50])
+
+
+@pytest.mark.parametrize("iterations", [0, 6])
+def test_sizes_by_region_are_the_paper_s(iterations):
+    darkness = ramp(200, 300)
+    plan = Plan(n_dots=3000, iterations=iterations, sizes="regions")
+    result = finished(darkness, plan)
+    assert abs(len(result.position_mm) - 3000) <= 60
+    radius, under = result.radius_mm, pixels_under(result, darkness)
+    middle = radius[(under > 0.4) & (under < 0.6)]
+    ordinary = np.median(radius)
+    assert np.mean(np.abs(middle / ordinary - 1) < 1e-5) > 0.9
+    assert radius.max() / radius.min() <= 2.0 + 1e-5
+    assert np.median(radius[under > 0.9]) > ordinary > np.median(radius[under < 0.15])
+    if not iterations:
+        assert under.min() > 0.005  # what is fainter is dropped
+
+
+def test_sizes_by_region_need_pulses():
+    with pytest.raises(ParameterError, match=r"^sizes: random has no regions"):
+        Plan(sizes="regions", first_dots="random")
+
+
+@pytest.mark.parametrize("start", ["top", "border"])
+def test_pulses_in_an_area_alone(start):
+    triangle = Polygon([(10, 10), (90, 20), (40, 95)])
+    points, radii = pulse_density(np.full((100, 100), 0.3, np.float32), 500, start=start,
+                                  area=triangle)  # fmt: skip
+    assert abs(len(points) - 500) <= 10
+    assert shapely.distance(triangle, shapely.points(points)).max() < 0.5
+    assert np.pi * (radii**2).sum() == pytest.approx(0.3 * triangle.area, rel=0.05)
+
+
+def test_an_area_smaller_than_a_dot_or_white():
+    darkness = np.full((50, 50), 0.3, np.float32)
+    small = Polygon([(20.1, 20.1), (20.3, 20.1), (20.2, 20.3)])
+    points, _ = pulse_density(darkness, 5, area=small)
+    assert len(points) <= 5
+    points, radii = pulse_density(darkness * 0, 5, area=Polygon([(5, 5), (40, 5), (20, 40)]))
+    assert len(points) == len(radii) == 0
+    with pytest.raises(GeometryError, match="no valid polygon"):
+        pulse_density(darkness, 5, area=Polygon([(0, 0), (9, 9), (9, 0), (0, 9)]))
+
+
+def test_what_is_missing_is_said_with_how_much_and_where():
+    darkness = np.zeros((100, 100), np.float32)
+    darkness[40:80, 10:30] = 1.0
+    result = finished(darkness, Plan(n_dots=40, size_range_mm=(0.5, 1.0), iterations=2), 50.0)
+    (note,) = notes_on(result)
+    assert note.startswith("8.0 % of the page is too dark")
+    assert "between 5.0, 20.0 and 15.0, 40.0 mm" in note

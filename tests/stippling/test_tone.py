@@ -9,8 +9,9 @@ from scipy.ndimage import gaussian_filter
 from stippler.analysis.tone_error import draw_ink
 from stippler.drawing.reference import Reference
 from stippler.kernels.pool import n_threads, set_threads
+from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
-from stippler.stippling.tone import Rule, ink_for, rule_for, shortfall, solve_radii
+from stippler.stippling.tone import Rule, ink_for, rule_for, shortfall
 
 NO_RIM = np.empty(0, np.float32)
 

@@ -8,9 +8,10 @@ from typing import Any
 from imgui_bundle import imgui
 
 from stippler.drawing.pens import PENS
-from stippler.stippling.plan import FIRST_DOTS, GROWTHS, STARTS
+from stippler.stippling.plan import FIRST_DOTS, GROWTHS, SIZES, STARTS
 from stippler.ui import work
 from stippler.ui.commands import Commands
+from stippler.ui.panels.fill import draw_fill
 from stippler.ui.session import Session
 from stippler.ui.theme import ICON_DICE, ICON_PAUSE, ICON_PLAY, ICON_STOP
 from stippler.ui.widgets import Widgets
@@ -31,51 +32,75 @@ _OUTCOMES = {"empty": "", "done": "done", "stopped": "stopped", "failed": "faile
 
 
 def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
-    """Draw the section."""
-    widgets.heading("Dots")
+    """Draw the section; on a page without a picture, filling it stands first."""
     plan = session.plan
     changes: dict[str, Any] = {}
-    _draw_number(widgets, session, changes)
-    _draw_sizes(widgets, session, changes)
-    chosen = widgets.choice(
-        "First dots",
-        _FIRST_DOTS_LABELS,
-        FIRST_DOTS.index(plan.first_dots),
-        "How the dots are set before they relax. Pulse density follows the picture best.",
-    )
-    changes["first_dots"] = FIRST_DOTS[chosen]
-    if plan.first_dots == "pulse-density":
-        _draw_pulses(widgets, session, changes)
+    blank = session.drawing is not None and session.reference is None
+    if blank:
+        draw_fill(widgets, session)
+        widgets.rule()
+        widgets.heading("Dots")
+    else:
+        widgets.heading("Dots")
+        _draw_first_dots(widgets, session, changes)
     changes["iterations"] = widgets.number(
         "Iterations",
         plan.iterations,
         "Relaxation steps: each makes the spacing more even. 10 to 20 suffice.",
     )
-    by_tone = widgets.segments(
-        "Relax",
-        ("By tone", "Evenly"),
-        int(not plan.weighted),
-        (
-            "Dots move to the centre of mass of their cells: dark parts stay dense.",
-            "Dots move to the middle of their cells, as in the paper: light parts fill up.",
-        ),
-    )
-    changes["weighted"] = by_tone == 0
-    pens = [pen.name for pen in PENS]
-    chosen = widgets.choice(
-        "Pen",
-        [pen.label for pen in PENS],
-        pens.index(plan.pen),
-        "The shapes of the dots; the Shape panel shows the pens, and changes dots that are there.",
-    )
-    changes["pen"] = pens[chosen]
-    _draw_seed(widgets, session, changes)
+    if not blank:
+        _draw_relaxation(widgets, session, changes)
+        _draw_pen(widgets, session, changes)
+        _draw_seed(widgets, session, changes)
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
     if changed:
         session.edit_plan(**changed)
     imgui.dummy((0.0, 2.0 * widgets.scale))
     _draw_buttons(widgets, session, commands)
     _draw_progress(widgets, session)
+
+
+def _draw_first_dots(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    plan = session.plan
+    _draw_number(widgets, session, changes)
+    _draw_sizes(widgets, session, changes)
+    chosen = FIRST_DOTS[
+        widgets.choice(
+            "First dots",
+            _FIRST_DOTS_LABELS,
+            FIRST_DOTS.index(plan.first_dots),
+            "How the dots are set before they relax. Pulse density follows the picture best.",
+        )
+    ]
+    changes["first_dots"] = chosen
+    if plan.first_dots == "pulse-density":
+        _draw_pulses(widgets, session, changes)
+    if chosen != "pulse-density":
+        changes["sizes"] = "tone"
+
+
+def _draw_relaxation(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    by_tone = widgets.segments(
+        "Relax",
+        ("By tone", "Evenly"),
+        int(not session.plan.weighted),
+        (
+            "Dots move to the centre of mass of their cells: dark parts stay dense.",
+            "Dots move to the middle of their cells, as in the paper: light parts fill up.",
+        ),
+    )
+    changes["weighted"] = by_tone == 0
+
+
+def _draw_pen(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    pens = [pen.name for pen in PENS]
+    chosen = widgets.choice(
+        "Pen",
+        [pen.label for pen in PENS],
+        pens.index(session.plan.pen),
+        "The shapes of the dots; the Shape panel shows the pens, and changes dots that are there.",
+    )
+    changes["pen"] = pens[chosen]
 
 
 def _draw_pulses(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
@@ -92,7 +117,18 @@ def _draw_pulses(widgets: Widgets, session: Session, changes: dict[str, Any]) ->
         STARTS.index(plan.start),
         ("The page is filled from its top.", "The outermost dots line up with the ink's border."),
     )
+    sizes = widgets.segments(
+        "Sizes by",
+        ("Tone", "Region"),
+        SIZES.index(plan.sizes),
+        (
+            "Dots are as large as it takes for the ink to meet the tone.",
+            "As in the paper: dots whose regions stay small are enlarged, dots whose regions get "
+            "large are reduced, and the largest regions get none.",
+        ),
+    )
     changes["growth"], changes["start"] = GROWTHS[growth], STARTS[start]
+    changes["sizes"] = SIZES[sizes]
 
 
 def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:

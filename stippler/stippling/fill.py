@@ -1,0 +1,57 @@
+"""Dots for an area where there is no picture; importing it costs nothing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from stippler.errors import ParameterError
+from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
+
+if TYPE_CHECKING:
+    from stippler.drawing.drawing import Drawing
+    from stippler.drawing.editing import Editing
+
+
+@dataclass(frozen=True, slots=True)
+class Filling:
+    """How an area is filled.
+
+    Attributes
+    ----------
+    n_dots : int
+        A hexagonal grid has about so many.
+    arrangement : {"hexagonal", "random"}
+    radius_mm : float
+    seed : int
+        Chooses where random dots lie.
+    """
+
+    n_dots: int = 2_000
+    arrangement: str = ARRANGEMENTS[0]
+    radius_mm: float = 0.3
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.n_dots <= MAX_DOTS:
+            raise ParameterError(
+                f"{self.n_dots} dots cannot be drawn", "fill", f"give 1 to {MAX_DOTS:,}"
+            )
+        if not (math.isfinite(self.radius_mm) and self.radius_mm > 0):
+            raise ParameterError(f"{self.radius_mm:g} mm is no radius", "fill", "give more than 0")
+        if not 0 <= self.seed < 2**63:
+            raise ParameterError(f"{self.seed} is no seed", "fill", "give 0 or more")
+
+
+def fill_drawing(drawing: Drawing, editing: Editing, filling: Filling, area: int = 0) -> int:
+    """Fill an area of a drawing, as one edit; return how many dots were added."""
+    from stippler.drawing.dots import Dots
+    from stippler.stippling.starts import fill_area
+
+    outline = drawing.areas[area].outline_mm
+    points = fill_area(outline, filling.n_dots, filling.arrangement, filling.seed)
+    editing.begin("Fill")
+    editing.insert(Dots.round(points, filling.radius_mm, area=area))
+    editing.commit()
+    return len(points)

@@ -1,0 +1,171 @@
+"""Solving the radii: the union of the discs, overlaps included, meets the darkness."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.grid import sort_by_grid_cell
+from stippler.kernels.pool import run_ranges
+from stippler.kernels.radii import (
+    compare_sizes,
+    even_sizes,
+    find_room,
+    fit_radii,
+    pass_on,
+    sum_room,
+)
+from stippler.kernels.tone import MAX_CORNERS, build_cells, sum_darkness
+from stippler.stippling.tone import Rule
+
+_DOTS_AT_ONCE = 8_000
+_ROUNDS = 4  # of passing on ink that a dot cannot lay down
+_ENOUGH = 2e-4  # share of all ink that need not be passed on
+_GAIN = 0.11  # share of the oddity of its size that a dot hands to each neighbour
+_CONTRAST = 0.7  # between cells whose tones differ by so much no ink goes
+_REACH = 7.0  # mean spacings; a cell reaches no farther from its dot to any side
+
+
+def solve_radii(
+    points: NDArray[np.float64],
+    darkness: NDArray[np.float32],
+    rule: Rule,
+    n_dots: int | None = None,
+) -> Iterator[tuple[float, NDArray[np.float64]]]:
+    """Find radii at which the union of the discs meets the darkness.
+
+    Every dot lays down the ink that its Voronoi cell asks for; what the range of the rule does
+    not allow is passed on to its neighbours, as far as `_ROUNDS` cells away.
+
+    Parameters
+    ----------
+    points : (n, 2) float64, pixels of `darkness`
+    darkness : (h, w) float32, read-only
+    rule : Rule
+        Its range of radii, in pixels.
+    n_dots : int, optional
+        How many dots there are, where `points` are only those of a part of the page.
+
+    Yields
+    ------
+    share : float
+        Of the work done.
+    radii : (n,) float64, pixels
+        Found once the share is 1.
+
+    Notes
+    -----
+    O(n); the same bits for any number of threads.
+    """
+    n = len(points)
+    result = np.empty(n)
+    if n == 0:
+        yield 1.0, result
+        return
+    low, high = rule.radius_min, rule.radius_max
+    order, cell_start, frame = sorted_by_place(points, darkness, n_dots or n)
+    cells = _Cells(n)
+    for share in cells.build(points[order], cell_start, frame, darkness):
+        yield 0.8 * share, result
+    yield 0.8, result
+    cells.fit(low, high)
+    if low < high:
+        yield 0.8, result
+        cells.even_sizes()
+        cells.fit(low, high)
+    for k in range(_ROUNDS):
+        if np.abs(cells.left).sum() <= _ENOUGH * cells.asked.sum():
+            break
+        yield 0.8 + 0.1 * k / _ROUNDS, result
+        cells.pass_on(low, high)
+        cells.fit(low, high)
+    result[order] = cells.radii
+    yield 1.0, result
+
+
+class _Cells:
+    """The cells of sorted dots, and the ink that each asks for."""
+
+    def __init__(self, n: int) -> None:
+        self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
+        self.beyond = np.empty((n, MAX_CORNERS), np.int32)
+        self.n_corners = np.empty(n, np.uint8)
+        self.asked, self.before = np.empty(n), np.full(n, -1.0)
+        self.radii, self.left = np.empty(n), np.empty(n)
+
+    def build(
+        self,
+        xy: NDArray[np.float64],
+        cell_start: NDArray[np.int32],
+        frame: NDArray[np.float64],
+        darkness: NDArray[np.float32],
+    ) -> Iterator[float]:
+        """Build the cells of dots sorted by grid cell; yield the share done."""
+        n, (h, w) = len(xy), darkness.shape
+        sums = np.empty((h, w + 1, 2))
+        run_ranges(sum_darkness, h, darkness, sums, grain=64)
+        yield 0.0
+        results = self.corners, self.beyond, self.n_corners, self.asked
+        for first in range(0, n, _DOTS_AT_ONCE):
+            last = min(first + _DOTS_AT_ONCE, n)
+
+            def part(start: int, stop: int, first: int = first) -> None:
+                build_cells(first + start, first + stop, xy, cell_start, frame, sums, *results)
+
+            run_ranges(part, last - first)
+            yield last / n
+
+    def fit(self, low: float, high: float) -> None:
+        """Find radii within a range, and the ink `left` that it does not allow."""
+        run_ranges(
+            fit_radii,
+            len(self.asked),
+            self.corners,
+            self.n_corners,
+            self.asked,
+            self.before,
+            low,
+            high,
+            self.radii,
+            self.left,
+        )
+        self.before = self.asked
+
+    def even_sizes(self) -> None:
+        """Let neighbours of like tone even out their sizes."""
+        n, beyond, count = len(self.asked), self.beyond, self.n_corners
+        odd, tone, new = np.empty(n), np.empty(n), np.empty(n)
+        run_ranges(compare_sizes, n, self.corners, beyond, count, self.asked, self.radii, odd, tone)
+        run_ranges(
+            even_sizes, n, beyond, count, self.radii, odd, tone, _GAIN, _CONTRAST, self.asked, new
+        )
+        self.asked = new
+
+    def pass_on(self, low: float, high: float) -> None:
+        """Ask neighbours for the ink that a dot's range does not allow."""
+        n, corners, beyond, count = len(self.asked), self.corners, self.beyond, self.n_corners
+        room, given, new = np.empty((n, 2)), np.empty(n), np.empty(n)
+        run_ranges(find_room, n, corners, beyond, count, low, high, self.radii, self.left, room)
+        run_ranges(sum_room, n, beyond, count, self.left, room, given)
+        run_ranges(pass_on, n, beyond, count, room, given, self.asked, new)
+        self.asked = new
+
+
+def sorted_by_place(
+    points: NDArray[np.float64], darkness: NDArray[np.float32], n_dots: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+    """Sort dots into a uniform grid; return the order, each grid cell's start, and the frame."""
+    n, (h, w) = n_dots, darkness.shape
+    inked = max(float(np.count_nonzero(darkness[::4, ::4])) * 16.0, 0.05 * h * w)
+    side = max(math.sqrt(1.2 * min(inked, h * w) / n), max(h, w) / 30_000)
+    columns, rows = max(1, math.ceil(w / side)), max(1, math.ceil(h / side))
+    column = np.minimum((points[:, 0] / side).astype(np.int32), columns - 1)
+    row = np.minimum((points[:, 1] / side).astype(np.int32), rows - 1)
+    cell_start = np.zeros(columns * rows + 1, np.int32)
+    order = np.empty(len(points), np.int32)
+    sort_by_grid_cell(row * np.int32(columns) + column, cell_start, order)
+    half = _REACH * math.sqrt(h * w / n)
+    return order, cell_start, np.array([w, h, side, columns, rows, half], np.float64)
