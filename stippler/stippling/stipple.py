@@ -13,13 +13,14 @@ from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.reference import Reference
+from stippler.stippling.compartments import polygon_of
 from stippler.stippling.finish import at_edge, even_rim, part_close
 from stippler.stippling.halftone import DROPPED, outside_area, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
-from stippler.stippling.starts import check_area, floyd_steinberg, hexagonal, random_dots
+from stippler.stippling.starts import floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.tone import Shortfall, shortfall
 
 if TYPE_CHECKING:
@@ -196,7 +197,7 @@ def _pulses_inside(
     reference: Reference, plan: Plan, area: Polygon | MultiPolygon
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Place the number of dots that the plan asks for in an area of the reference alone."""
-    check_area(area)
+    polygon_of(area, "area")
     field = np.array(reference.darkness)
     outside_area(field, area)
     if not field.any():
