@@ -67,6 +67,13 @@ class Plan:
     weighted: bool = True
     pen: str = DEFAULT_PEN
 
+    @property
+    def n_asked(self) -> int | None:
+        """How many dots are asked for; None if that follows from the size range."""
+        if self.n_dots is None and self.size_range_mm is None:
+            return DEFAULT_DOTS
+        return self.n_dots
+
     def __post_init__(self) -> None:
         if self.n_dots is not None and not 1 <= whole(self.n_dots, "dots") <= MAX_DOTS:
             raise ParameterError(
