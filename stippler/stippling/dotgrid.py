@@ -83,4 +83,5 @@ def _boxes(parts: Compartments) -> NDArray[np.float64]:
     box = parts.box
     size = (box[:, 2:] - box[:, :2]).max(axis=1)
     beyond = np.where(parts.kind == RECTANGLE, 0.0, 1e-9 * size + 1e-14 * np.abs(box).max(axis=1))
-    return box + beyond[:, None] * np.array([-1.0, -1.0, 1.0, 1.0])
+    larger: NDArray[np.float64] = box + beyond[:, None] * np.array([-1.0, -1.0, 1.0, 1.0])
+    return larger
