@@ -238,6 +238,9 @@ class Session:
         if self.drawing is None:
             self.messages.say("there is no drawing to export yet", WARNING)
             return
+        if not self.n_dots:
+            self.messages.say("there are no dots to export", WARNING)
+            return
         shown = self.editing if self.position_mm is None else None
         self.exports.start(self._snapshot(self.drawing), path, dpi, shown)
 
