@@ -91,10 +91,10 @@ class Preferences:
         document = self._document()
         if self.folder is None or (document, self.layout) == self._written:
             return
-        self._written = (document, self.layout)
         write_document(self.folder / FILE, document)
         if self.layout:
             write_text(self.folder / LAYOUT_FILE, self.layout)
+        self._written = (document, self.layout)
 
     # --- values of a drawing to come ----------------------------------------------------------
 

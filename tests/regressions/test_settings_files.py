@@ -9,6 +9,7 @@ import pytest
 
 from stippler.brushes.brush import Brush, first_brushes
 from stippler.brushes.presets import load_brushes
+from stippler.errors import StipplerError
 from stippler.settings import read_document
 from stippler.ui.preferences import FILE, Preferences
 from stippler.ui.tools.toolbox import Toolbox
@@ -61,3 +62,14 @@ def test_a_broken_file_of_brushes_is_not_written_over(tmp_path):
     box.resize(2.0)
     box.save()
     assert (tmp_path / "brushes.broken.json").read_text() == '{"brushes": ['
+
+
+def test_what_could_not_be_kept_is_tried_again(tmp_path):
+    folder = tmp_path / "settings"
+    folder.write_text("in the way")
+    kept = Preferences(folder)
+    with pytest.raises(StipplerError):
+        kept.keep()
+    folder.unlink()
+    kept.keep()
+    assert (folder / FILE).exists()
