@@ -18,7 +18,7 @@ from stippler.ui.host import Host
 from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW
 from stippler.ui.place import Place
 from stippler.ui.preferences import FILE, Preferences
-from stippler.ui.theme import DARK
+from stippler.ui.theme import DARK, PANEL_WIDTH, STRIP_WIDTH
 from stippler.ui.widgets import Widgets
 
 from .conftest import Desk
@@ -259,7 +259,7 @@ def test_panels_close_open_and_keep_their_place(start: Start) -> None:
     desk.host.settle()
     assert desk.host.place("Start") == pytest.approx(place, abs=2)
     run_by_name(desk, "reset the panels")
-    assert desk.host.place("Start")[0] < 342
+    assert desk.host.place("Start")[0] < STRIP_WIDTH + PANEL_WIDTH
 
 
 def test_broken_settings_are_told_and_do_no_harm(start: Start, tmp_path: Path) -> None:
