@@ -194,6 +194,7 @@ class Editor:
         self._place(area)
         for event in events:
             self._take(event)
+        self.lens_key.let_pass()
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
         self._preview = self._previewed()
@@ -316,7 +317,8 @@ class Editor:
         """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
         free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
         if isinstance(event, Moved | Pressed | Released | Scrolled):
-            if not (free or self.painting.is_busy):
+            held = self.painting.is_busy and not isinstance(event, Pressed)  # that is the panel's
+            if not (free or held):
                 return False
             event = self.pointer.local(event)
         return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)

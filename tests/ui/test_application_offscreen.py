@@ -341,6 +341,17 @@ def test_what_no_hand_has_touched_is_closed_unasked(desk, picture: Path) -> None
     assert desk.app.window.wants_to_close
 
 
+def test_a_picture_dropped_on_a_file_dialog_is_asked_about(desk, picture: Path) -> None:
+    painted(desk, picture)
+    desk.host.key("e", ctrl=True)
+    assert desk.app.editor.popups.dialogs.is_open
+    desk.host.drop(picture)
+    assert not desk.app.editor.popups.dialogs.is_open  # two windows fought for the keyboard
+    desk.host.click("Discard")
+    assert not desk.app.editor.popups.is_open
+    desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
+
+
 def test_closing_asks_however_often(desk, picture: Path) -> None:
     left = painted(desk, picture)
     assert desk.app.window.title == "disc.png* – Stippler"

@@ -278,3 +278,20 @@ def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
     session.undo()
     session.undo()
     assert not session.editing.history.n_done
+
+
+def test_a_press_on_a_panel_is_no_corner_of_a_polygon(desk, picture):
+    opened(desk, picture)
+    toolbox = desk.app.editor.painting.toolbox
+    toolbox.choose_kind("select")
+    toolbox.set_brush(toolbox.brush.with_value("how", "polygon"))
+    desk.host.settle()
+    desk.host.click((600, 300))
+    desk.host.click((700, 300))
+    n = len(toolbox.outline)
+    desk.host.click((150, 690))  # beneath the controls of the panel at the left
+    assert len(toolbox.outline) == n
+    desk.host.click("No brush")
+    assert not desk.app.editor.painting.is_busy
+    desk.host.key("r")  # the keyboard has not been left with the polygon
+    assert desk.app.editor.look.reference_shown
