@@ -205,7 +205,7 @@ def _front(charge: NDArray[np.float32], spacing: float, slope: float, seed: int)
 
 def _spacing(density: NDArray[np.float32]) -> float:
     """Return the mean spacing of dots where there are any, in pixels."""
-    asked = float(density.sum(dtype=np.float64)) / max(np.count_nonzero(density), 1)
+    asked = float(density.sum(dtype=np.float64)) / max(int(np.count_nonzero(density)), 1)
     return 1.0 / math.sqrt(max(asked, 1e-12))
 
 
