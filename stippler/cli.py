@@ -1,4 +1,4 @@
-"""The command line: edit, render, bench and info."""
+"""The command line: edit, render, stats, bench and info."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 _INTERRUPTED = 130
-COMMANDS = ("edit", "render", "bench", "info")
+COMMANDS = ("edit", "render", "stats", "bench", "info")
 
 app = typer.Typer(
     add_completion=False,
@@ -194,6 +194,61 @@ def render(
         show("write", 1, 1)
     for note in drawing.notes:
         typer.echo(f"stippler: {file}: {note}", err=True)
+
+
+@app.command()
+def stats(
+    context: typer.Context,
+    file: Annotated[Path, typer.Argument(help="A .csv from render, or a picture to draw.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    reference: Annotated[
+        Path | None, typer.Option(help="For a .csv: the picture that its ink should meet.")
+    ] = None,
+    dots: Dots = None,
+    width: Width = DEFAULT_WIDTH_MM,
+    iterations: Iterations = 20,
+    seed: Seed = 1,
+    tone: ToneOption = "linear",
+    size_range: SizeRange = None,
+    first_dots: FirstDots = "pulse-density",
+    growth: Growth = "circular",
+    start: Start = "top",
+    sizes: Sizes = "tone",
+    unweighted: Unweighted = False,
+) -> None:
+    """Print the number of dots, their spacing, spectrum and tone error.
+
+    A picture is drawn as render would draw it with the same options, and nothing is written. For a
+    .csv, --reference, --width and --tone say what it was drawn from.
+    """
+    _check_page(tone, width)
+    from stippler import statistics
+
+    if file.suffix.lower() == ".csv":
+        given = _given(context) - {"file", "as_json", "reference", "width_mm", "tone"}
+        if given:
+            raise ParameterError(
+                "is drawn already", file, "leave out all but --reference, --width and --tone"
+            )
+        report = statistics.of_table(file, reference, tone=tone, width_mm=width)
+    else:
+        if reference is not None:
+            raise ParameterError("is for a .csv", "reference", "a picture is its own")
+        plan = _plan(
+            n_dots=dots,
+            size_range_mm=_size_range(size_range),
+            iterations=iterations,
+            seed=seed,
+            first_dots=first_dots,
+            growth=growth,
+            start=start,
+            sizes=sizes,
+            weighted=not unweighted,
+        )
+        report, notes = statistics.of_picture(file, plan, tone=tone, width_mm=width)
+        for note in notes:
+            typer.echo(f"stippler: {file}: {note}", err=True)
+    typer.echo(statistics.as_json(report) if as_json else statistics.as_text(report))
 
 
 @app.command()

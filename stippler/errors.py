@@ -34,6 +34,10 @@ class PictureError(StipplerError):
     """A picture that cannot be read."""
 
 
+class TableError(StipplerError):
+    """A table of dots that cannot be read."""
+
+
 class OutputError(StipplerError, OSError):
     """A file that cannot be written."""
 

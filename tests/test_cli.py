@@ -1,6 +1,7 @@
 """The command line as a person meets it: whole processes, exit codes, one line for each fault."""
 
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -124,6 +125,44 @@ def test_render_png_has_its_size_and_resolution(picture, tmp_path):
     assert grey[:10, :10].min() == 1.0
     # linear tone puts down more ink than the encoded numbers say, and less than a black disc
     assert dark.mean() < 1 - grey.mean() < np.pi * 0.64 / 4
+
+
+def test_stats_of_a_table_are_those_of_its_picture(picture, tmp_path, monkeypatch, capsys):
+    made = ["--dots", 1500, "--width", 80, "--iterations", 5]
+    out = tmp_path / "dots.csv"
+    assert run("render", picture, "-o", out, *made).returncode == 0
+    ask = ["--reference", picture, "--width", 80, "--json"]
+    of_table = json.loads(run_here(monkeypatch, capsys, "stats", out, *ask).stdout)
+    of_picture = json.loads(run_here(monkeypatch, capsys, "stats", picture, *made, "--json").stdout)
+    assert of_table == pytest.approx(of_picture, rel=0.02, abs=1e-4)
+    assert len(of_table) > 15
+    assert of_table["tone_rmse"] < 0.02
+    assert abs(of_table["dots"] - 1500) <= 15
+    alone = run_here(monkeypatch, capsys, "stats", out)
+    assert alone.stdout.startswith("dots ")
+    assert "tone" not in alone.stdout
+
+
+@pytest.mark.parametrize(
+    ("args", "status", "words"),
+    [
+        (["dots.csv", "--dots", "5"], 2, ["dots.csv", "is drawn already"]),
+        (["dots.csv", "--reference", "{picture}", "--width", "5"], 1, ["dots.csv", "--width"]),
+        (["dots.csv", "--reference", "none.png"], 1, ["none.png", "no such file"]),
+        (["bad.csv"], 1, ["bad.csv, line 2", "9"]),
+        (["none.csv"], 1, ["none.csv", "no such file"]),
+        (["{picture}", "--reference", "{picture}"], 2, ["reference"]),
+        (["{picture}", "--width", "nan"], 2, ["page"]),
+    ],
+)
+def test_stats_of_what_cannot_be_measured(
+    picture, tmp_path, monkeypatch, capsys, args, status, words
+):
+    monkeypatch.chdir(tmp_path)
+    Path("dots.csv").write_text(f"{COLUMNS}\n9,9,0.5,1,0,0,1,0,0\n")
+    Path("bad.csv").write_text(f"{COLUMNS}\n9,9\n")
+    args = [part.format(picture=picture) for part in args]
+    assert_one_line(run_here(monkeypatch, capsys, "stats", *args), status, *words)
 
 
 @pytest.mark.parametrize(

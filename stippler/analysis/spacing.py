@@ -24,7 +24,7 @@ class Spacing:
         First percentile of that ratio; 0.58 on a hexagonal grid.
     edge_variance : float
         Variance of the lengths of Delaunay edges, over the square of their mean (Deussen et al.
-        2000, appendix).
+        2000, appendix), but for those of the outermost dots.
     """
 
     mean: float
@@ -73,7 +73,10 @@ def _edge_variance(points: NDArray[np.float64]) -> float:
     triangles = mesh.simplices
     sides = np.concatenate((triangles[:, :2], triangles[:, 1:], triangles[:, ::2]))
     sides = np.unique(np.sort(sides, axis=1), axis=0)
-    sides = sides[~np.isin(sides, mesh.convex_hull).any(axis=1)]  # slivers along the hull
+    rim = np.unique(mesh.convex_hull)
+    for _ in range(2):  # slivers along the hull reach a dot or two inwards
+        rim = np.unique(triangles[np.isin(triangles, rim).any(axis=1)])
+    sides = sides[~np.isin(sides, rim).any(axis=1)]
     if len(sides) < 2:
         return float("nan")
     length = np.linalg.norm(points[sides[:, 0]] - points[sides[:, 1]], axis=1)

@@ -48,7 +48,6 @@ def grow(
     charge: Array,
     order: Array,
     cursor: Array,
-    stop: int,
     dy: Array,
     dx: Array,
     chance: int,
@@ -56,18 +55,16 @@ def grow(
     areas: Array,
     max_points: int,
 ) -> int:
-    """Grow regions from the seeds `cursor[0]..stop`, in raster order or along `order`.
+    """Grow regions from one seed after another.
 
     Parameters
     ----------
     charge : (h, w) float32
         Used up in place.
     order : (m,) int32
-        Flat indices of the seeds; empty: raster order.
-    cursor : (3,) float64
-        Next seed, dots so far, and the charge taken that no dot stands for yet; updated.
-    stop : int
-        Seed before which to stop.
+        Flat indices of the seeds.
+    cursor : (2,) float64
+        Dots so far, and the charge taken that no dot stands for yet; updated.
     dy, dx : (t, k) int16
         Offsets from the seed in order of growth; each region takes one of the t orders.
     chance : int
@@ -82,12 +79,11 @@ def grow(
     number of dots is the sum of the charge, to one dot, whatever the picture.
     """
     h, w = charge.shape
-    in_order = len(order) > 0
-    seed = int(cursor[0])
-    n = int(cursor[1])
-    left = cursor[2]
-    while seed < stop and n < max_points:
-        at = order[seed] if in_order else seed
+    seed = 0
+    n = int(cursor[0])
+    left = cursor[1]
+    while seed < len(order) and n < max_points:
+        at = order[seed]
         y0 = at // w
         x0 = at - y0 * w
         seed += 1
@@ -156,9 +152,8 @@ def grow(
         points[n, 1] = py
         areas[n] = area
         n += 1
-    cursor[0] = seed
-    cursor[1] = n
-    cursor[2] = left
+    cursor[0] = n
+    cursor[1] = left
     return n
 
 

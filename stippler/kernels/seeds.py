@@ -11,6 +11,9 @@ from stippler.kernels.jit import kernel
 
 Array = NDArray[Any]
 
+FRONT_STEP = 16
+"""Rows between those for which an undulating front is given."""
+
 _FAR = 65_000
 
 
@@ -115,3 +118,61 @@ def order_by_distance(distance: Array, order: Array) -> None:
             if d > 0:
                 order[first[d]] = y * w + x
                 first[d] += 1
+
+
+@kernel
+def along_front(
+    charge: Array, lag: Array, next_row: Array, due: Array, at: Array, stop: int, order: Array
+) -> int:
+    """List the flat indices of cells with charge as an undulating front comes down over them.
+
+    Parameters
+    ----------
+    charge : (h, w) float32
+    lag : (h // FRONT_STEP + 2, w) float32
+        The front reaches a cell at the level of its row plus this, which is given for every so
+        many rows.
+    next_row : (w,) int32
+        First row of each column that is not listed yet, from 0; updated.
+    due : (w,) float32
+        Level at which the front reaches it, from `lag[0]`; updated.
+    at : (2,) int64
+        Level and column to go on from; updated.
+    stop : int
+        Level before which to stop.
+    order : (m,) int32
+        Filled from its beginning.
+
+    Returns
+    -------
+    int
+        How many are listed; m if there may be more before `stop`.
+    """
+    h, w = charge.shape
+    step = np.uint32(FRONT_STEP)
+    n = 0
+    x = int(at[1])
+    for level in range(at[0], stop):
+        while x < w:
+            while due[x] <= level:
+                y = np.uint32(next_row[x])
+                if charge[y, x] > 0.0:
+                    if n == len(order):
+                        at[0] = level
+                        at[1] = x
+                        return n
+                    order[n] = y * w + x
+                    n += 1
+                y += np.uint32(1)
+                next_row[x] = y
+                if y == h:
+                    due[x] = np.inf
+                    break
+                j = y // step
+                part = np.float32(y - j * step) * np.float32(1.0 / FRONT_STEP)
+                due[x] = np.float32(y) + lag[j, x] + part * (lag[j + 1, x] - lag[j, x])
+            x += 1
+        x = 0
+    at[0] = stop
+    at[1] = 0
+    return n

@@ -17,7 +17,13 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.errors import ParameterError
 from stippler.kernels.pulse_density import fill_cells, grow
-from stippler.kernels.seeds import chamfer, order_by_distance, outside_polygon
+from stippler.kernels.seeds import (
+    FRONT_STEP,
+    along_front,
+    chamfer,
+    order_by_distance,
+    outside_polygon,
+)
 from stippler.stippling.plan import GROWTHS, STARTS
 from stippler.stippling.tone import Rule
 
@@ -30,8 +36,11 @@ ENLARGED, REDUCED, DROPPED = 0.75, 0.25, 0.02
 _REACH = 200  # cells; the farthest a region looks for its charge
 _SEEDS_AT_ONCE = 250_000
 _FEW = 1_000  # dots, of which one is missed
+_LEVELS_AT_ONCE = 1_000_000  # cells that the front may pass over
 _VARIANTS = 8
-_SKEW = {"circular": 0.9, "triangular": 0.25}
+_SKEW = {"circular": 0.7, "triangular": 0.15}
+_SLOPE = {"circular": 0.8, "triangular": 0.2}  # of the undulating front
+_WAVES, _WAVELENGTH, _TURN = 4, 24.0, 0.25  # lengths in dot spacings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,14 +77,16 @@ def pulse_density(
         "border" begins along the border of what has to be filled and works inwards, so that the
         outermost dots line up with it.
     seed : int
-        Each region's growth is skewed a little, as if by chance, so that constant density shows
-        no direction; this is the chance.
+        Each region's growth is skewed a little, and the front from the top undulates, as if by
+        chance, so that constant density shows no direction; this is the chance.
     inside : polygon in pixels, optional
         Only what lies inside counts.
 
     Notes
     -----
-    4 bytes for each super-sampled cell, 10 with "border".
+    4 bytes for each super-sampled cell, 10 with "border". Regions line up with the front that
+    they grow from. From the top it is no row of cells but undulates, so that they line up in every
+    direction somewhere.
     """
     if start not in STARTS:
         raise ParameterError(f"{start!r} is no start", "start", f"one of {', '.join(STARTS)}")
@@ -89,13 +100,15 @@ def pulse_density(
         charge *= np.float32((round(asked) + 0.01) / asked)  # rounding would lose the last dot
     n_max = math.ceil(asked * 1.0001) + 16
     points, areas = np.empty((n_max, 2)), np.empty(n_max, np.float32)
-    order = _border_first(charge) if start == "border" else np.empty(0, np.int32)
-    dy, dx = growth_orders(growth, _reach(density, s), start == "border")
-    cursor = np.zeros(3)
-    n_seeds = len(order) if start == "border" else charge.size
-    for stop in _stops(n_seeds):
-        n = grow(charge, order, cursor, stop, dy, dx, seed, points, areas, n_max)
-        yield stop / max(n_seeds, 1), FirstDots(points[:n] / s, areas[:n] / np.float32(s * s))
+    dy, dx = growth_orders(growth, _reach(density, s))
+    cursor = np.zeros(2)
+    if start == "border":
+        seeds = _border_first(charge)
+    else:
+        seeds = _front(charge, s * _spacing(density), _SLOPE[growth], seed)
+    for share, order in seeds:
+        n = grow(charge, order, cursor, dy, dx, seed, points, areas, n_max)
+        yield share, FirstDots(points[:n] / s, areas[:n] / np.float32(s * s))
 
 
 def outside_area(field: NDArray[np.float32], area: Polygon | MultiPolygon) -> None:
@@ -141,21 +154,16 @@ def supersampling(density: NDArray[np.float32]) -> int:
 
 
 @lru_cache(maxsize=8)
-def growth_orders(
-    growth: str, reach: int, everywhere: bool
-) -> tuple[NDArray[np.int16], NDArray[np.int16]]:
+def growth_orders(growth: str, reach: int) -> tuple[NDArray[np.int16], NDArray[np.int16]]:
     """Return row and column offsets from a seed, in the order in which its region grows.
 
-    Several variants, skewed a little to either side, one a row. In raster order everything above
-    the seed, and to its left, is used already.
+    Several variants, skewed a little to either side, one a row.
     """
     if growth not in GROWTHS:
         raise ParameterError(
             f"{growth!r} is no growth order", "growth", f"one of {', '.join(GROWTHS)}"
         )
-    y, x = np.mgrid[(-reach if everywhere else 0) : reach + 1, -reach : reach + 1]
-    ahead = np.ones(y.shape, bool) if everywhere else (y > 0) | (x >= 0)
-    y, x = y[ahead], x[ahead]
+    y, x = (side.ravel() for side in np.mgrid[-reach : reach + 1, -reach : reach + 1])
     rows: list[tuple[NDArray[np.int16], NDArray[np.int16]]] = []
     for skew in np.linspace(-_SKEW[growth], _SKEW[growth], _VARIANTS):
         if growth == "circular":
@@ -180,18 +188,57 @@ def _reach(density: NDArray[np.float32], s: int) -> int:
     return int(min(max(16, 2 ** math.ceil(math.log2(need))), _REACH))
 
 
-def _stops(n: int) -> Iterator[int]:
-    yield from range(_SEEDS_AT_ONCE, n, _SEEDS_AT_ONCE)
-    yield n
+_Seeds = Iterator[tuple[float, NDArray[np.int32]]]
+"""The next seeds, and the share of all that is done with them."""
 
 
-def _border_first(charge: NDArray[np.float32]) -> NDArray[np.int32]:
-    """Return the cells that hold charge, the nearest to the border first."""
+def _front(charge: NDArray[np.float32], spacing: float, slope: float, seed: int) -> _Seeds:
+    """Yield the cells that hold charge as an undulating front passes over them from the top."""
+    h, w = charge.shape
+    lag = _undulation(h, w, spacing, slope, seed)
+    height = math.ceil(float(np.abs(lag).max())) + 1
+    order = np.empty(min(_SEEDS_AT_ONCE, charge.size) + 1, np.int32)
+    next_row, due = np.zeros(w, np.int32), lag[0].copy()
+    at = np.array((-height, 0), np.int64)
+    last = h + height
+    while at[0] < last:
+        stop = min(int(at[0]) + 1 + _LEVELS_AT_ONCE // w, last)
+        n = along_front(charge, lag, next_row, due, at, stop, order)
+        yield (int(at[0]) + height) / (last + height), order[:n]
+
+
+def _spacing(density: NDArray[np.float32]) -> float:
+    """Return the mean spacing of dots where there are any, in pixels."""
+    asked = float(density.sum(dtype=np.float64)) / max(int(np.count_nonzero(density)), 1)
+    return 1.0 / math.sqrt(max(asked, 1e-12))
+
+
+def _undulation(h: int, w: int, spacing: float, slope: float, seed: int) -> NDArray[np.float32]:
+    """Return how many cells a front lags behind, by waves along it that turn a little."""
+    rng = np.random.default_rng(seed)
+    x, y = np.arange(w), np.arange(h // FRONT_STEP + 2)[:, None] * FRONT_STEP
+    lag = np.zeros((len(y), w), np.float32)
+    for _ in range(_WAVES):
+        q = 2.0 * math.pi / (_WAVELENGTH * spacing * rng.uniform(0.7, 1.4))
+        turn, phase = rng.uniform(-_TURN, _TURN), rng.uniform(0.0, 2.0 * math.pi)
+        high = min(slope / q * math.sqrt(2.0 / _WAVES), float(h))
+        across, down = q * math.cos(turn) * x + phase, q * math.sin(turn) * y
+        lag += (high * np.cos(across)).astype(np.float32) * np.cos(down).astype(np.float32)
+        lag -= (high * np.sin(across)).astype(np.float32) * np.sin(down).astype(np.float32)
+    return lag
+
+
+def _border_first(charge: NDArray[np.float32]) -> _Seeds:
+    """Yield the cells that hold charge, the nearest to the border first."""
     distance = np.empty(charge.shape, np.uint16)
     chamfer(charge, distance)
     order = np.empty(int(np.count_nonzero(charge)), np.int32)
     order_by_distance(distance, order)
-    return order
+    for begin in range(0, len(order), _SEEDS_AT_ONCE):
+        seeds = order[begin : begin + _SEEDS_AT_ONCE]
+        yield (begin + len(seeds)) / len(order), seeds
+    if not len(order):
+        yield 1.0, order
 
 
 def _edges(area: Polygon | MultiPolygon) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ GROWTHS = ("circular", "triangular")
 """Orders in which a region takes cells; the first has the better spectrum."""
 
 STARTS = ("top", "border")
-"""Where the first region lies: seeds in raster order, or from the border inwards."""
+"""Where the first region lies: from the top down, or from the border inwards."""
 
 SIZES = ("tone", "regions")
 """Dot sizes: solved for the tone, or as the paper has them, by how far regions had to grow."""

@@ -5,10 +5,14 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon
 
 from stippler.kernels.pulse_density import USED, diffuse, fill_cells, grow
-from stippler.kernels.seeds import chamfer, order_by_distance, outside_polygon
+from stippler.kernels.seeds import (
+    FRONT_STEP,
+    along_front,
+    chamfer,
+    order_by_distance,
+    outside_polygon,
+)
 from stippler.stippling.halftone import growth_orders
-
-IN_ROWS = np.empty(0, np.int32)
 
 
 def field(seed, h, w, white):
@@ -18,15 +22,15 @@ def field(seed, h, w, white):
     return charge
 
 
-def grown(charge, order=IN_ROWS, stops=(), chance=1, reach=40, everywhere=False):
+def grown(charge, order=None, stops=(), chance=1, reach=40):
     work = charge.copy()
+    order = np.arange(charge.size, dtype=np.int32) if order is None else order
     n_max = int(charge.sum()) + 16
-    points, areas, cursor = np.empty((n_max, 2)), np.empty(n_max, np.float32), np.zeros(3)
-    dy, dx = growth_orders("circular", reach, everywhere)
-    n_seeds = len(order) or charge.size
-    for stop in (*stops, n_seeds):
-        n = grow(work, order, cursor, stop, dy, dx, chance, points, areas, n_max)
-    return points[:n], areas[:n], work, cursor[2]
+    points, areas, cursor = np.empty((n_max, 2)), np.empty(n_max, np.float32), np.zeros(2)
+    dy, dx = growth_orders("circular", reach)
+    for seeds in np.split(order, stops):
+        n = grow(work, seeds, cursor, dy, dx, chance, points, areas, n_max)
+    return points[:n], areas[:n], work, cursor[1]
 
 
 @settings(max_examples=40)
@@ -131,3 +135,25 @@ def test_seeds_run_from_the_border_inwards(seed, white):
     order_by_distance(distance, order)
     assert np.array_equal(np.sort(order), np.flatnonzero(charge))
     assert (np.diff(distance.ravel()[order].astype(int)) >= 0).all()
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 10**6), st.integers(1, 40), st.integers(1, 40), st.integers(1, 50))
+def test_an_undulating_front_reaches_every_cell_once_and_in_order(seed, h, w, piece):
+    charge = field(seed, h, w, 0.3)
+    rng = np.random.default_rng(seed)
+    lag = rng.uniform(-8, 8, (h // FRONT_STEP + 2, w)).astype(np.float32)
+    rows = np.arange(h)
+    ahead = np.stack([np.interp(rows, np.arange(len(lag)) * FRONT_STEP, c) for c in lag.T], axis=1)
+    level_of_cell = np.maximum.accumulate(np.ceil(rows[:, None] + ahead), axis=0)
+    last = h + 20
+    next_row, due = np.zeros(w, np.int32), lag[0].copy()
+    at = np.array((-20, 0), np.int64)
+    listed, order = [], np.empty(piece, np.int32)
+    while at[0] < last:
+        stop = min(int(at[0]) + 7, last)
+        n = along_front(charge, lag, next_row, due, at, stop, order)
+        listed.extend(order[:n].tolist())
+    assert sorted(listed) == np.flatnonzero(charge).tolist()
+    assert (next_row == h).all()
+    assert (np.diff(level_of_cell.ravel()[listed]) >= -1).all()  # but for rounding in float32
