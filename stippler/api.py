@@ -15,7 +15,7 @@ from stippler.drawing.drawing import Drawing as _Drawing
 from stippler.drawing.pens import pen_named
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
-from stippler.errors import GeometryError, ParameterError
+from stippler.errors import ParameterError
 from stippler.stippling.plan import DEFAULT_PEN, Plan
 from stippler.stippling.stipple import Progress, notes_on, stages
 from stippler.units import DEFAULT_WIDTH_MM
@@ -223,16 +223,9 @@ def relax(points: ArrayLike, polygon: Any, *args: Any, **kwargs: Any) -> NDArray
 
 
 def _polygon(area: Any) -> Polygon | MultiPolygon:
-    from shapely.geometry import MultiPolygon, Polygon
+    from stippler.stippling.compartments import polygon_of
 
-    if isinstance(area, Polygon | MultiPolygon):
-        return area
-    corners = np.asarray(area, np.float64)
-    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
-        raise GeometryError(
-            f"has shape {corners.shape}", "area", "give a shapely polygon or (m, 2) corners"
-        )
-    return Polygon(corners)
+    return polygon_of(area, "area")
 
 
 def _darkness(image: Any, tone: str) -> NDArray[np.float32]:

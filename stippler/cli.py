@@ -290,9 +290,9 @@ def _plan(**values: Any) -> Plan:
 def _size_range(text: str | None) -> tuple[float, float] | None:
     if text is None:
         return None
-    low, _, high = text.partition(":")
+    low, colon, high = text.partition(":")
     try:
-        return float(low), float(high or low)
+        return float(low), float(high if colon else low)
     except ValueError:
         raise ParameterError(
             f"{text!r} is no range", "size range", "give MIN:MAX in mm, such as 0.15:0.3"

@@ -34,7 +34,7 @@ def read_document(path: Path) -> tuple[dict[str, Any], str]:
         return {}, ""
     except OSError as error:
         return {}, f"{path}: cannot be read ({error.strerror}); defaults are used"
-    except ValueError as error:  # broken JSON, or no UTF-8
+    except (ValueError, RecursionError) as error:  # broken JSON, or no UTF-8; or a pit of brackets
         why = str(error)
     aside = put_aside(path)
     return {}, f"{path}: is broken ({why}); defaults are used, and it is kept as {aside}"

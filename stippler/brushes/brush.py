@@ -45,6 +45,8 @@ class Brush:
     values: Mapping[str, Value] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise ParameterError(f"{self.name!r} is no name", "brush")
         if self.kind not in (kind.name for kind in KINDS):
             raise ParameterError(f"{self.kind!r} is no type of brush", self.name)
         for name, value, low, high in (
@@ -98,7 +100,7 @@ class Brush:
             known = {p.name for p in kind_of(data["kind"]).parameters}
             values = {name: value for name, value in data["values"].items() if name in known}
             return cls(**{**data, "tip": Tip(**tip), "values": values})
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
             if isinstance(error, ParameterError):
                 raise
             raise ParameterError(f"is no brush ({error})", str(data)[:40]) from error

@@ -56,7 +56,9 @@ class Kind:
 
 _STRENGTH = Parameter("strength", "Strength", 100.0, "Share of the effect.", 1.0, 100.0, "%")
 _RADIUS = Parameter("dot_mm", "Dot radius", 0.2, "Radius of new dots in mm.", 0.02, 2.0, "mm")
-_DOTS_PER_S = Parameter("per_s", "Dots a second", 200.0, "However fast the brush moves.", 1, 5000)
+_DOTS_PER_S = Parameter(
+    "per_s", "Dots / s", 200.0, "Dots a second, however fast the brush moves.", 1, 5000
+)
 
 KINDS: tuple[Kind, ...] = (
     Kind("add", "Add a dot", "a", "click", "Adds one dot where you click.", (_RADIUS,)),
@@ -103,7 +105,7 @@ KINDS: tuple[Kind, ...] = (
         "Evens out the spacing for as long as you hold.",
         (
             _STRENGTH,
-            Parameter("per_s", "Steps a second", 30.0, "Relaxation steps a second.", 1, 60),
+            Parameter("per_s", "Steps / s", 30.0, "Relaxation steps a second.", 1, 60),
             Parameter(
                 "by_tone", "Follow the picture", False, "Keeps dots denser where it is darker."
             ),

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from stippler.brushes.brush import Brush, first_brushes
 from stippler.brushes.kinds import KINDS
 from stippler.errors import ParameterError
-from stippler.settings import settings_folder, write_document
+from stippler.settings import put_aside, read_document, settings_folder, write_document
 
 _VERSION = 1
 
@@ -21,21 +20,20 @@ def presets_path() -> Path:
 def load_brushes(path: Path) -> tuple[list[Brush], str]:
     """Return the brushes kept in a file, and what was wrong with it, if anything.
 
-    Every type is there at least once, whatever the file holds.
+    Every type is there at least once, whatever the file holds. A file that holds something else
+    is put aside, so that it is not written over.
     """
-    problem = ""
+    document, problem = read_document(path)
+    kept = document.get("brushes", [])
     brushes: list[Brush] = []
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-        for data in document["brushes"]:
-            try:
-                brushes.append(Brush.from_dict(data))
-            except ParameterError as error:
-                problem = str(error)
-    except FileNotFoundError:
-        pass
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        problem = f"{path.name} cannot be read ({error})"
+    unusable = "" if isinstance(kept, list) else "'brushes' is no list"
+    for data in kept if isinstance(kept, list) else ():
+        try:
+            brushes.append(Brush.from_dict(data))
+        except ParameterError as error:
+            unusable = str(error)
+    if unusable:
+        problem = f"{unusable}; the file is kept as {put_aside(path)}"
     there = {brush.kind for brush in brushes}
     brushes += [brush for brush in first_brushes() if brush.kind not in there]
     order = {kind.name: k for k, kind in enumerate(KINDS)}

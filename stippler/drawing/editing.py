@@ -177,11 +177,16 @@ class Editing:
     # --- history ----------------------------------------------------------------------------
 
     def undo(self) -> bool:
-        """Take the last step back; return whether there was one. A run that goes on ends."""
+        """Take the last step back; return whether there was one. A run that goes on ends.
+
+        Where that run has not moved anything yet, ending it is all there is to take back.
+        """
         self._no_stroke()
         step = self.history.undone
         if step is not None and step.is_open:
             self.end_run()
+            if self.history.undone is not step:
+                return True
         return self._step(self.history.undo())
 
     def redo(self) -> bool:

@@ -104,7 +104,10 @@ def darkness_of_array(values: Any, tone: str = "linear") -> NDArray[np.float32]:
         0 (black) to 1 (white).
     """
     check_tone(tone)
-    pixels = np.asarray(values)
+    try:
+        pixels = np.asarray(values)
+    except ValueError:
+        raise ParameterError("rows differ in length", "image") from None
     if pixels.ndim not in (2, 3) or pixels.size == 0 or (pixels.ndim == 3 and pixels.shape[2] > 4):
         raise ParameterError(f"an array of shape {pixels.shape} is no picture", "image")
     if pixels.shape[0] * pixels.shape[1] > MAX_PIXELS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import IO
@@ -17,6 +18,7 @@ from stippler.kernels import svg_text
 
 DECIMALS = 3
 MAX_DECIMALS = 6
+_FINE = 0.02  # of the smallest radius: a last decimal of so much puts nothing more than half off
 
 _ROUGH = 1e-3  # less is drawn smooth
 SEGMENTS = ((_ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
@@ -24,18 +26,19 @@ _BLOCK = 8192
 _PATH_BLOCK = 2048  # their text is made in room that stays in the cache
 
 
-def write(drawing: Drawing, stream: IO[bytes], *, decimals: int = DECIMALS) -> None:
+def write(drawing: Drawing, stream: IO[bytes], *, decimals: int | None = None) -> None:
     """Write a drawing as SVG to a binary stream; see `svg_chunks`."""
     stream.writelines(svg_chunks(drawing, decimals=decimals))
 
 
-def svg_chunks(drawing: Drawing, *, decimals: int = DECIMALS) -> Iterator[bytes]:
+def svg_chunks(drawing: Drawing, *, decimals: int | None = None) -> Iterator[bytes]:
     """Yield a drawing as SVG, piece by piece.
 
     Parameters
     ----------
-    decimals : int
-        Of positions in mm; radii get two more. 3 is a thousandth of a millimetre.
+    decimals : int, optional
+        Of positions in mm; radii get two more. None: 3, a thousandth of a millimetre, or as many
+        as keep within a hundredth of the smallest radius.
 
     Yields
     ------
@@ -52,6 +55,8 @@ def svg_chunks(drawing: Drawing, *, decimals: int = DECIMALS) -> Iterator[bytes]
     Dots of an area are one group; in it the round ones come first, then smooth ellipses, then rough
     outlines. A path keeps within 1 % of the radius of the formula in `kernels/dot_shape.py`.
     """
+    if decimals is None:
+        decimals = _decimals_for(drawing.dots)
     if not 0 <= decimals <= MAX_DECIMALS:
         raise ParameterError(
             f"{decimals} is no number of decimals", "decimals", f"give 0 to {MAX_DECIMALS}"
@@ -64,6 +69,13 @@ def svg_chunks(drawing: Drawing, *, decimals: int = DECIMALS) -> Iterator[bytes]
             yield from _elements(drawing.dots, rows, decimals)
             yield b"</g>\n"
     yield b"</svg>\n"
+
+
+def _decimals_for(dots: Dots) -> int:
+    if not len(dots):
+        return DECIMALS
+    step = _FINE * float(dots.radius_mm.min())
+    return min(max(math.ceil(-math.log10(step) - 1e-6), DECIMALS), MAX_DECIMALS)
 
 
 def _head(drawing: Drawing) -> bytes:

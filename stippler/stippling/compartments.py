@@ -12,11 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.polygon import orient
 
-from stippler.errors import GeometryError
+from stippler.errors import GeometryError, ParameterError
+from stippler.stippling.given import floats
 
 Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
 
 RECTANGLE, POLYGON = 0, 1
+
+_LEAST, _MOST = 1e-60, 1e60
+"""Sides and coordinates between which squares of areas are numbers."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +93,11 @@ class Compartments:
         ------
         GeometryError
             If a point lies outside all compartments, or outside the shape it is said to be in.
+        ParameterError
+            If there is no shape of that number.
         """
+        if shape_of_dot is not None:
+            self._check_numbers(shape_of_dot)
         found = np.full(len(points), -1, np.int32)
         if len(self) == 1 and self.kind[0] == RECTANGLE:
             x0, y0, x1, y1 = self.box[0]
@@ -110,6 +118,16 @@ class Compartments:
         if len(outside):
             self._refuse(points, outside, shape_of_dot)
         return found
+
+    def _check_numbers(self, shape_of_dot: NDArray[np.int32]) -> None:
+        last = int(self.shape_of[-1])
+        bad = np.flatnonzero((shape_of_dot < 0) | (shape_of_dot > last))
+        if len(bad):
+            raise ParameterError(
+                f"there is no compartment {shape_of_dot[bad[0]]}, named for dot {bad[0]}",
+                "compartment_of_dot",
+                f"give 0 to {last}",
+            )
 
     def _refuse(
         self,
@@ -135,17 +153,30 @@ def _as_list(shapes: object) -> Sequence[object]:
     if isinstance(shapes, Polygon | MultiPolygon | np.ndarray):
         return [shapes]
     if isinstance(shapes, list | tuple):
-        if shapes and not isinstance(shapes[0], Polygon | MultiPolygon) and np.ndim(shapes) == 2:
-            return [np.asarray(shapes, np.float64)]
-        return shapes
+        return [floats(shapes, "polygon")] if _is_ring(shapes) else shapes
     raise GeometryError(f"a {type(shapes).__name__} is no polygon", "polygon")
 
 
-def _polygons_of(shape: object, name: str) -> list[Polygon]:
+def _is_ring(shapes: Sequence[object]) -> bool:
+    """Whether a list holds the corners of one polygon rather than polygons."""
+    first = shapes[0] if shapes else None
+    if isinstance(first, Polygon | MultiPolygon) or not isinstance(first, Sequence | np.ndarray):
+        return False
+    return not any(np.ndim(number) for number in first)
+
+
+def polygon_of(shape: object, name: str) -> Polygon | MultiPolygon:
+    """Return a shape or (m, 2) corners as a polygon that has an inside.
+
+    Raises
+    ------
+    GeometryError
+        If it is none; the error calls it `name`.
+    """
     if isinstance(shape, Polygon | MultiPolygon):
         geometry = shape
     else:
-        ring = np.asarray(shape, np.float64)
+        ring = floats(shape, name)  # type: ignore[arg-type]
         if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3:
             raise GeometryError("a polygon needs at least three points (m, 2)", name)
         if not np.isfinite(ring).all():
@@ -158,8 +189,16 @@ def _polygons_of(shape: object, name: str) -> list[Polygon]:
     if not geometry.is_valid:
         reason = shapely.is_valid_reason(geometry)
         raise GeometryError(f"is not valid ({reason})", name, "repair it with shapely.make_valid")
-    if not geometry.area > 0.0:
+    x0, y0, x1, y1 = geometry.bounds
+    if not max(-x0, -y0, x1, y1) <= _MOST:
+        raise GeometryError(f"reaches beyond {_MOST:g}", name, "use a larger unit")
+    if not (min(x1 - x0, y1 - y0) >= _LEAST and geometry.area > 0.0):
         raise GeometryError("has no area", name)
+    return geometry
+
+
+def _polygons_of(shape: object, name: str) -> list[Polygon]:
+    geometry = polygon_of(shape, name)
     return list(geometry.geoms) if isinstance(geometry, MultiPolygon) else [geometry]
 
 

@@ -13,6 +13,9 @@ from stippler.errors import ParameterError
 from stippler.kernels.field import sum_rows
 from stippler.kernels.pool import run_ranges
 from stippler.kernels.tables import Field
+from stippler.stippling.given import floats
+
+_DENSEST = 1e30  # sums of the kernels' float32 go no further
 
 Density = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
@@ -38,8 +41,8 @@ class DensityField:
         values = np.asarray(self.values)
         if values.ndim != 2 or values.size == 0:
             raise ParameterError("a density is a 2-d field with at least one pixel", "density")
-        if not (float(values.min()) >= 0.0 and math.isfinite(float(values.max()))):
-            raise ParameterError("has to be finite and not below 0", "density")
+        if not (float(values.min()) >= 0.0 and float(values.max()) <= _DENSEST):
+            raise ParameterError(f"has to be between 0 and {_DENSEST:g}", "density")
         sides = np.broadcast_to(np.asarray(self.pixel_mm, np.float64), (2,))
         if not (np.isfinite(sides) & (sides > 0)).all():
             raise ParameterError(f"{self.pixel_mm} mm is no pixel size", "density")
@@ -64,10 +67,15 @@ class DensityField:
             h = max(round(pixels * (y1 - y0) / longest), 1)
             x = x0 + (np.arange(w) + 0.5) * (x1 - x0) / w
             y = y0 + (np.arange(h) + 0.5) * (y1 - y0) / h
-            sampled = np.asarray(density(*np.meshgrid(x, y)), np.float64)
+            sampled = floats(density(*np.meshgrid(x, y)), "density")
+            if sampled.shape not in ((), (h, w)):
+                raise ParameterError(
+                    f"the function returns shape {sampled.shape} for x and y of shape {(h, w)}",
+                    "density",
+                )
             values = np.broadcast_to(sampled, (h, w))
         else:
-            values = np.asarray(density, np.float64)
+            values = floats(density, "density")
         if values.ndim != 2 or values.size == 0:
             raise ParameterError("a density is a 2-d field with at least one pixel", "density")
         h, w = values.shape

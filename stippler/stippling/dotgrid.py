@@ -69,6 +69,19 @@ def _frames(
     nx = np.maximum(np.ceil(width / side), 1).astype(np.int64)
     ny = np.maximum(np.ceil(height / side), 1).astype(np.int64)
     first = np.concatenate([[0], np.cumsum(nx * ny)])
-    real = np.column_stack([parts.box[:, :2], side, 1.0 / side, parts.box])
+    real = np.column_stack([parts.box[:, :2], side, 1.0 / side, _boxes(parts)])
     whole = np.column_stack([nx, ny, first[:-1], parts.kind != RECTANGLE]).astype(np.int32)
     return np.ascontiguousarray(real), np.ascontiguousarray(whole), int(first[-1])
+
+
+def _boxes(parts: Compartments) -> NDArray[np.float64]:
+    """Return the box that cells start from: a polygon's is a trifle larger than the polygon.
+
+    A dot on the polygon's outermost corner would else lie on its cell's rim, where it cannot be
+    told which chains of the border hide it.
+    """
+    box = parts.box
+    size = (box[:, 2:] - box[:, :2]).max(axis=1)
+    beyond = np.where(parts.kind == RECTANGLE, 0.0, 1e-9 * size + 1e-14 * np.abs(box).max(axis=1))
+    larger: NDArray[np.float64] = box + beyond[:, None] * np.array([-1.0, -1.0, 1.0, 1.0])
+    return larger

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from stippler.drawing.drawing import MAX_PAGE_MM
 from stippler.errors import ParameterError
 from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
 
@@ -38,8 +39,12 @@ class Filling:
             raise ParameterError(
                 f"{self.n_dots} dots cannot be drawn", "fill", f"give 1 to {MAX_DOTS:,}"
             )
-        if not (math.isfinite(self.radius_mm) and self.radius_mm > 0):
-            raise ParameterError(f"{self.radius_mm:g} mm is no radius", "fill", "give more than 0")
+        if not (math.isfinite(self.radius_mm) and 0 < self.radius_mm <= MAX_PAGE_MM):
+            raise ParameterError(
+                f"{self.radius_mm:g} mm is no radius",
+                "fill",
+                f"give more than 0 and at most {MAX_PAGE_MM:,g}",
+            )
         if not 0 <= self.seed < 2**63:
             raise ParameterError(f"{self.seed} is no seed", "fill", "give 0 or more")
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from stippler.errors import ParameterError
+from stippler.stippling.given import whole
 
 FIRST_DOTS = ("pulse-density", "floyd-steinberg", "random", "hexagonal")
 """Ways to place the first dots."""
@@ -66,24 +67,25 @@ class Plan:
     weighted: bool = True
     pen: str = DEFAULT_PEN
 
+    @property
+    def n_asked(self) -> int | None:
+        """How many dots are asked for; None if that follows from the size range."""
+        if self.n_dots is None and self.size_range_mm is None:
+            return DEFAULT_DOTS
+        return self.n_dots
+
     def __post_init__(self) -> None:
-        if self.n_dots is not None and not 1 <= self.n_dots <= MAX_DOTS:
+        if self.n_dots is not None and not 1 <= whole(self.n_dots, "dots") <= MAX_DOTS:
             raise ParameterError(
                 f"{self.n_dots} dots cannot be drawn", "dots", f"give 1 to {MAX_DOTS:,}"
             )
         if self.size_range_mm is not None:
-            low, high = self.size_range_mm
-            if not (math.isfinite(low) and math.isfinite(high) and 0 < low <= high):
-                raise ParameterError(
-                    f"{low:g}:{high:g} is no range of radii",
-                    "size range",
-                    "give MIN:MAX in mm with 0 < MIN <= MAX",
-                )
-        if not 0 <= self.iterations <= 100_000:
+            _check_range(self.size_range_mm)
+        if not 0 <= whole(self.iterations, "iterations") <= 100_000:
             raise ParameterError(
                 f"{self.iterations} steps cannot be run", "iterations", "give 0 to 100,000"
             )
-        if not 0 <= self.seed < 2**63:
+        if not 0 <= whole(self.seed, "seed") < 2**63:
             raise ParameterError(f"{self.seed} is no seed", "seed", "give 0 or more")
         for name, value, known in (
             ("first dots", self.first_dots, FIRST_DOTS),
@@ -101,3 +103,15 @@ class Plan:
             from stippler.drawing.pens import pen_named
 
             pen_named(self.pen)
+
+
+def _check_range(size_range_mm: tuple[float, float]) -> None:
+    try:
+        low, high = (float(radius) for radius in size_range_mm)
+    except (TypeError, ValueError):
+        low = high = math.nan
+    if not 0 < low <= high < math.inf:
+        text = f"{low:g}:{high:g}" if low == low else f"{size_range_mm!r}"
+        raise ParameterError(
+            f"{text} is no range of radii", "size range", "give MIN:MAX in mm with 0 < MIN <= MAX"
+        )

@@ -16,6 +16,7 @@ from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
+from stippler.stippling.given import floats, whole
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 
@@ -104,9 +105,10 @@ class Relaxation:
         xy = _checked_points(points)
         n = len(xy)
         self._fixed = _checked(fixed, n, np.bool_, "fixed", False)
-        if not 0.0 < over_relaxation < 2.0:
+        over = floats(over_relaxation, "over-relaxation")
+        if over.ndim or not 0.0 < over < 2.0:
             raise ParameterError(
-                f"{over_relaxation:g} is out of range", "over-relaxation", "give 0 < w < 2"
+                f"{over_relaxation} is out of range", "over-relaxation", "give 0 < w < 2"
             )
         self._parts = Compartments.of(polygon)
         shape_of_dot = None
@@ -116,7 +118,7 @@ class Relaxation:
         self._refuse_empty(found)
         self._part_coinciding(xy, found)
         self._density = density
-        self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over_relaxation))
+        self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -306,8 +308,11 @@ def relax(
     GeometryError
         If the polygon is not valid or a dot lies outside.
     """
-    if iterations < 0:
+    if whole(iterations, "iterations") < 0:
         raise ParameterError(f"{iterations} is no number of steps", "iterations", "give 0 or more")
+    tolerance = floats(tolerance_mm, "tolerance")
+    if tolerance.ndim or not tolerance >= 0.0:
+        raise ParameterError(f"{tolerance_mm} is no length", "tolerance", "give 0 or more")
     if density is not None and not isinstance(density, DensityField):
         boxes = Compartments.of(polygon).box
         box = np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
@@ -315,7 +320,7 @@ def relax(
     engine = Relaxation(
         points, polygon, fixed, compartment_of_dot, density, over_relaxation, method=method
     )
-    engine.run(iterations, tolerance_mm)
+    engine.run(int(iterations), float(tolerance))
     return np.array(engine.points)
 
 
@@ -324,7 +329,7 @@ def _as_question(cancel: Cancel) -> Callable[[], bool] | None:
 
 
 def _checked_points(points: ArrayLike) -> NDArray[np.float64]:
-    xy = np.array(points, dtype=np.float64)
+    xy = floats(points, "dots")
     if xy.size == 0:
         xy = xy.reshape(0, 2)
     if xy.ndim != 2 or xy.shape[1] != 2:
@@ -332,7 +337,7 @@ def _checked_points(points: ArrayLike) -> NDArray[np.float64]:
     bad = np.flatnonzero(~np.isfinite(xy).all(axis=1))
     if len(bad):
         raise GeometryError("its position is not finite", f"dot {bad[0]}", "drop it")
-    return np.ascontiguousarray(xy)
+    return xy
 
 
 def _checked(
@@ -340,7 +345,13 @@ def _checked(
 ) -> NDArray[Any]:
     if values is None:
         return np.full(n, default, dtype)
-    array = np.array(values, dtype=dtype)
-    if array.shape != (n,):
-        raise ParameterError(f"has shape {array.shape}, not ({n},)", name)
+    numbers = floats(values, name)
+    if numbers.shape != (n,):
+        raise ParameterError(f"has shape {numbers.shape}, not ({n},)", name)
+    with np.errstate(invalid="ignore"):
+        array = numbers.astype(dtype)
+    bad = np.flatnonzero(array != numbers)
+    if len(bad):
+        kind = "true or false" if dtype is np.bool_ else "a whole number"
+        raise ParameterError(f"{numbers[bad[0]]:g}, for dot {bad[0]}, is not {kind}", name)
     return array

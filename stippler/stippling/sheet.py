@@ -9,14 +9,17 @@ the page are drawn back to its edge. Lengths are pixels of the sheet's own resol
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
+from stippler.errors import ParameterError
 from stippler.kernels.ink import onto_ink, sample
 from stippler.kernels.pool import run_ranges
+from stippler.stippling.halftone import CELLS_PER_DOT
+from stippler.stippling.plan import MAX_DOTS
 from stippler.stippling.tone import Rule, rule_for
 
 _BLEED = 3.0  # mean spacings
@@ -24,6 +27,7 @@ _MIN_DOTS = 500  # below this a bleed is not worth it
 _PIXELS_PER_DOT = 60  # blocks of a reference that is finer are averaged
 _MIN_PIXELS = 2_500_000
 _DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
+_MOST_CELLS = 400_000_000  # of a halftone, whose cells are as fine as its densest part asks for
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
 
 
@@ -62,6 +66,11 @@ class Sheet:
         """Prepare a reference for so many dots or dots of such sizes; `faintest` as in a rule."""
         width, height = reference.width_mm, reference.height_mm
         guess = n_dots or _number_for(reference, size_range_mm)
+        if guess > MAX_DOTS:
+            raise ParameterError(
+                f"about {guess:,} dots of this size would be needed", "size range",
+                f"allow larger ones; {MAX_DOTS:,} can be drawn",
+            )  # fmt: skip
         darkness, scale = _at_resolution(reference.darkness, guess)
         pixel_mm = reference.pixel_mm * scale
         size_px = None
@@ -72,6 +81,12 @@ class Sheet:
             bleed = math.ceil(_BLEED * math.sqrt(darkness.size / guess))
         border = _border(darkness) if bleed else darkness[0, :0]
         rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
+        share = _share_that_fits(rule, darkness, bleed, guess)
+        if share < 1.0 and size_px is None:
+            n_dots = max(int(share * guess), 1)
+            rule = rule_for(darkness, n_dots, None, border, faintest=faintest)
+        elif share < 1.0:
+            rule = replace(rule, thin=share * rule.thin)
         return cls(darkness, bleed, rule, pixel_mm, (width, height))
 
     def density(self) -> NDArray[np.float32]:
@@ -148,6 +163,14 @@ class Sheet:
         position.flags.writeable = False
         radius.flags.writeable = False
         return position, radius
+
+
+def _share_that_fits(rule: Rule, darkness: NDArray[np.float32], bleed: int, n_dots: int) -> float:
+    """Return the share of the dots that can be drawn, where little of the page holds them all."""
+    h, w = darkness.shape
+    densest = float(rule.density(np.linspace(0.0, float(darkness.max()), 257)).max())
+    n_cells = CELLS_PER_DOT * densest * (h + 2 * bleed) * (w + 2 * bleed)
+    return float(max(_MOST_CELLS, 4 * CELLS_PER_DOT * n_dots) / max(n_cells, 1.0))
 
 
 def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -12,9 +12,15 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.errors import GeometryError, ParameterError
 from stippler.kernels.pulse_density import diffuse
+from stippler.stippling.compartments import polygon_of
+from stippler.stippling.given import whole
 from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
 
 _NO_DOTS = np.empty((0, 2))
+
+_MOST_EMPTY = 8.0  # times its area that the boxes around an area may cover
+_MOST_BOXES = 50_000
+_LEAST_STEP = 0.7  # of a spacing that is changed: a grid that misses an area would else explode
 
 
 def floyd_steinberg(density: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -96,16 +102,21 @@ def random_in(area: Polygon | MultiPolygon, n: int, seed: int) -> NDArray[np.flo
     GeometryError
         If the polygon is empty or not valid.
     """
-    _check(area, n)
+    n = _checked(area, n)
+    if whole(seed, "seed") < 0:
+        raise ParameterError(f"{seed} is no seed", "seed", "give 0 or more")
     rng = np.random.default_rng(seed)
-    x0, y0, x1, y1 = area.bounds
-    shapely.prepare(area)
+    low, size = _boxes(area)
+    ends = np.cumsum(size[:, 0] * size[:, 1])
+    share = area.area / ends[-1]
     parts: list[NDArray[np.float64]] = []
     missing = n
     while missing:
-        share = area.area / ((x1 - x0) * (y1 - y0))
-        tries = min(int(1.1 * missing / max(share, 1e-6)) + 16, 4_000_000)
-        some = rng.random((tries, 2)) * (x1 - x0, y1 - y0) + (x0, y0)
+        tries = min(int(1.1 * missing / share) + 16, 4_000_000)
+        k = 0
+        if len(low) > 1:
+            k = np.minimum(np.searchsorted(ends, rng.random(tries) * ends[-1]), len(low) - 1)
+        some = rng.random((tries, 2)) * size[k] + low[k]
         some = some[shapely.contains_xy(area, some[:, 0], some[:, 1])][:missing]
         parts.append(some)
         missing -= len(some)
@@ -114,30 +125,73 @@ def random_in(area: Polygon | MultiPolygon, n: int, seed: int) -> NDArray[np.flo
 
 def hexagonal_in(area: Polygon | MultiPolygon, n: int) -> NDArray[np.float64]:
     """Lay a hexagonal grid of about n dots over a polygon; arguments as for `random_in`."""
-    _check(area, n)
+    n = _checked(area, n)
     if n == 0:
         return _NO_DOTS
-    x0, y0, x1, y1 = area.bounds
-    shapely.prepare(area)
+    low, size = _boxes(area)
 
     def inside(spacing: float) -> NDArray[np.float64]:
-        grid = _hexagons(x1 - x0, y1 - y0, spacing) + np.array((x0, y0))
+        grid = _hexagons_in(low - low.min(axis=0), size, spacing) + low.min(axis=0)
         kept: NDArray[np.float64] = grid[shapely.contains_xy(area, grid[:, 0], grid[:, 1])]
         return kept
 
-    return _fitted(n, math.sqrt(2.0 / math.sqrt(3.0) * area.area / n), inside)
+    points = _fitted(n, math.sqrt(2.0 / math.sqrt(3.0) * area.area / n), inside)
+    if not len(points):
+        raise GeometryError(
+            f"is too narrow for a hexagonal grid of {n} dots",
+            "area",
+            "ask for more, or random ones",
+        )
+    return points
 
 
-def check_area(area: Polygon | MultiPolygon) -> None:
-    """Refuse a polygon that has no inside."""
-    if area.is_empty or not area.is_valid or not area.area > 0:
-        raise GeometryError("is no valid polygon", "area", "give one with an inside")
-
-
-def _check(area: Polygon | MultiPolygon, n: int) -> None:
+def _checked(area: Polygon | MultiPolygon, n: int) -> int:
+    n = whole(n, "dots")
     if not 0 <= n <= MAX_DOTS:
         raise ParameterError(f"{n} dots cannot be drawn", "dots", f"give 0 to {MAX_DOTS:,}")
-    check_area(area)
+    polygon_of(area, "area")
+    return n
+
+
+def _boxes(area: Polygon | MultiPolygon) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return corners and sizes, (k, 2) each, of boxes side by side that cover an area.
+
+    The area's own box, unless most of that is empty: then it is quartered, and so on.
+    """
+    shapely.prepare(area)
+    x0, y0, x1, y1 = area.bounds
+    low, size = np.array([(x0, y0)]), np.array([(x1 - x0, y1 - y0)])
+    quarters = np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
+    while size.prod(axis=1).sum() > _MOST_EMPTY * area.area and len(low) < _MOST_BOXES:
+        size = np.repeat(size / 2.0, 4, axis=0)
+        low = np.repeat(low, 4, axis=0) + size * np.tile(quarters, (len(low), 1))
+        touched = shapely.intersects(area, shapely.box(*low.T, *(low + size).T))
+        low, size = low[touched], size[touched]
+    return low, size
+
+
+def _hexagons_in(
+    low: NDArray[np.float64], size: NDArray[np.float64], spacing: float
+) -> NDArray[np.float64]:
+    """Return the dots of a hexagonal grid from (0, 0) on that lie in boxes, row by row."""
+    pitch = spacing * math.sqrt(0.75)
+    box, row = _counted(low[:, 1] / pitch - 0.5, (low + size)[:, 1] / pitch - 0.5)
+    shift = 0.25 + 0.5 * (row % 2)
+    left, right = low[box, 0] / spacing - shift, (low + size)[box, 0] / spacing - shift
+    run, column = _counted(left, right)
+    row, shift = row[run], shift[run]
+    points = np.column_stack(((column + shift) * spacing, (row + 0.5) * pitch))
+    return points[np.lexsort((column, row))] if len(low) > 1 else points
+
+
+def _counted(
+    start: NDArray[np.float64], stop: NDArray[np.float64]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """List the whole numbers of ranges ``start <= i < stop``: which range, and the number."""
+    first = np.ceil(start).astype(np.intp)
+    n = np.maximum(np.ceil(stop).astype(np.intp) - first, 0)
+    which = np.repeat(np.arange(len(n)), n)
+    return which, np.arange(len(which)) - np.repeat(np.cumsum(n) - n - first, n)
 
 
 def _fitted(
@@ -149,7 +203,7 @@ def _fitted(
     for _ in range(8):
         if abs(len(points) - wanted) <= 0.002 * wanted:
             break
-        spacing *= math.sqrt(max(len(points), 1) / wanted)
+        spacing *= max(math.sqrt(len(points) / wanted), _LEAST_STEP)
         points = place(spacing)
         if abs(len(points) - wanted) < abs(len(best) - wanted):
             best = points

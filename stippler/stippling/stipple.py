@@ -13,13 +13,14 @@ from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.reference import Reference
+from stippler.stippling.compartments import polygon_of
 from stippler.stippling.finish import at_edge, even_rim, part_close
 from stippler.stippling.halftone import DROPPED, outside_area, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.sheet import Sheet
-from stippler.stippling.starts import check_area, floyd_steinberg, hexagonal, random_dots
+from stippler.stippling.starts import floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.tone import Shortfall, shortfall
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     ) -> Progress:
         shown = nothing
         if snapshots:
-            px = sheet.trim(px, plan.n_dots)
+            px = sheet.trim(px, plan.n_asked)
             shown = sheet.on_page(px, sheet.radii(px))
         return Progress(stage, done, total, *shown, movement_mm)
 
@@ -96,7 +97,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
-    points = sheet.trim(points, plan.n_dots)
+    points = sheet.trim(points, plan.n_asked)
     if plan.weighted and plan.iterations:
         for share, finished in _finish(sheet, points):
             points = finished
@@ -107,7 +108,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         radii = solved
         if share < 1.0:
             yield snapshot("tone", round(200 + 800 * share), 1000, points)
-    lack = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_dots)
+    lack = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_asked)
     yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=lack)
 
 
@@ -132,7 +133,7 @@ def _stages_by_region(sheet: Sheet, plan: Plan, snapshots: bool) -> Iterator[Pro
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
     points = sheet.onto_ink(sheet.trim(points, None))
-    notes = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_dots).notes
+    notes = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_asked).notes
     yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=Shortfall(notes=notes))
 
 
@@ -196,7 +197,7 @@ def _pulses_inside(
     reference: Reference, plan: Plan, area: Polygon | MultiPolygon
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Place the number of dots that the plan asks for in an area of the reference alone."""
-    check_area(area)
+    polygon_of(area, "area")
     field = np.array(reference.darkness)
     outside_area(field, area)
     if not field.any():
@@ -215,13 +216,10 @@ def _pulses_inside(
 
 def sheet_for(reference: Reference, plan: Plan) -> Sheet:
     """Prepare the sheet that a plan lays its dots out on."""
-    n_dots = plan.n_dots
-    if n_dots is None and plan.size_range_mm is None:
-        n_dots = DEFAULT_DOTS
     by_region = plan.sizes == "regions"
     return Sheet.of(
         reference,
-        n_dots,
+        plan.n_asked,
         plan.size_range_mm,
         bleeds=plan.weighted and not by_region,
         faintest=DROPPED if by_region else None,

@@ -184,8 +184,10 @@ def shortfall(
 ) -> Shortfall:
     """Say where the largest dots, as dense as the rule sets them, are not dark enough."""
     notes: tuple[str, ...] = ()
-    if n == 0:
+    if not darkness.any():
         notes = ("the reference is white: no dots",)
+    elif n == 0:
+        notes = ("no dot of this size fits the ink: ask for more, or for smaller ones",)
     elif wanted is not None and n < 0.99 * wanted:
         notes = (f"only {n:,} of {wanted:,} dots fit at the smallest size",)
     levels = np.linspace(0.0, 1.0, 257)

@@ -42,6 +42,8 @@ from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.sight import draw_view
 from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.tools import draw_tools
+from stippler.ui.panels.work import HEIGHT as WORK_HEIGHT
+from stippler.ui.panels.work import draw_work
 from stippler.ui.pen_samples import PenSamples
 from stippler.ui.pointer import Pointer
 from stippler.ui.popups import Popups
@@ -56,6 +58,7 @@ from stippler.ui.widgets import Rect, Widgets
 from stippler.ui.window import Window
 
 _CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
+_LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
@@ -191,6 +194,7 @@ class Editor:
         self._place(area)
         for event in events:
             self._take(event)
+        self.lens_key.let_pass()
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
         self._preview = self._previewed()
@@ -210,9 +214,13 @@ class Editor:
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
+        room = imgui.get_content_region_avail().y - WORK_HEIGHT * self.gui.scale
+        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * self.gui.scale)))
         draw_picture(self.widgets, self.session, self.commands)
         self.widgets.rule()
-        draw_dots(self.widgets, self.session, self.commands)
+        draw_dots(self.widgets, self.session)
+        imgui.end_child()
+        draw_work(self.widgets, self.session, self.commands)
 
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
@@ -309,7 +317,8 @@ class Editor:
         """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
         free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
         if isinstance(event, Moved | Pressed | Released | Scrolled):
-            if not (free or self.painting.is_busy):
+            held = self.painting.is_busy and not isinstance(event, Pressed)  # that is the panel's
+            if not (free or held):
                 return False
             event = self.pointer.local(event)
         return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)

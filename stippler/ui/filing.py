@@ -76,7 +76,9 @@ class Filing:
         self._kept.recent.clear()
 
     def drop(self, paths: tuple[Path, ...]) -> None:
-        """Open what was dropped on the window."""
+        """Open what was dropped on the window; a file dialog has its answer by that."""
+        if paths and not self.guard.is_open:
+            self._dialogs.dismiss()
         if len(paths) > 1:
             self._session.messages.say(f"one picture at a time; {paths[0].name} is opened", WARNING)
         if paths:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from stippler.ui.editor import Editor
 from stippler.ui.window import Window
 
+_MOST_NOTCHES = 40  # of the wheel, until a control is given up
 _BUTTONS = {
     "left": glfw.MOUSE_BUTTON_LEFT,
     "right": glfw.MOUSE_BUTTON_RIGHT,
@@ -93,8 +94,11 @@ class Host:
         self._button(button, glfw.RELEASE)
 
     def click(self, target: str | tuple[float, float]) -> None:
-        """Click a control by its label, or a place."""
-        self.move(*(self.place(target) if isinstance(target, str) else target))
+        """Click a control by its label, or a place; a control out of sight is scrolled to."""
+        if isinstance(target, str):
+            self.bring(target)
+            target = self.place(target)
+        self.move(*target)
         self.press()
         self.release()
         self.settle()
@@ -150,6 +154,15 @@ class Host:
             self.click(label)  # marks all
         self.type(text)
         self.key("enter")
+
+    def bring(self, label: str) -> None:
+        """Turn the wheel over a control's panel until the control is in sight."""
+        for _ in range(_MOST_NOTCHES):
+            _, y = self.place(label)
+            x0, low, x1, high = self._editor.widgets.rooms.get(label, (0.0, -1e9, 0.0, 1e9))
+            if low <= y <= high:
+                return
+            self.scroll(1.0 if y < low else -1.0, ((x0 + x1) / 2, (low + high) / 2))
 
     def drop(self, *paths: Path) -> None:
         """Drop files on the window."""

@@ -97,6 +97,10 @@ class LensKey:
             case FocusLost() if self._held:
                 self._look.lens, self._held = self._before, ""
 
+    def let_pass(self) -> None:
+        """Take note that the event has been taken: what is switched from now on, no key holds."""
+        self._down = None
+
     def note_frame(self, now_s: float) -> None:
         """Take note that a frame was drawn: a tap is as short as that, however long it took."""
         self._since_s = min(self._since_s, now_s)

@@ -81,7 +81,7 @@ class Painting:
         if self._session.busy:
             text = "the first dots are being placed; paint as soon as they move, or stop the work"
         else:
-            text = "there is no page to paint on; open a picture, or begin a new page (Ctrl+N)"
+            text = "there is no page to paint on; open a picture, or begin a new page"
         self._session.messages.say(text, WARNING)
         return True
 

@@ -29,7 +29,7 @@ class PenSamples:
 
     def show(self, k: int, size: tuple[float, float], theme: Theme, scale: float) -> None:
         """Draw the sample of a pen as an ImGui item of a size in ImGui's pixels."""
-        texture = self._made((round(size[0]), round(size[1])), theme, scale)
+        texture = self._made((max(round(size[0]), 1), max(round(size[1]), 1)), theme, scale)
         n = len(PENS)
         imgui.image(imgui.ImTextureRef(texture.glo), size, (0.0, 1 - k / n), (1.0, 1 - (k + 1) / n))
 

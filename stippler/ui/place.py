@@ -40,10 +40,11 @@ class Place:
             If there is none.
         """
         width, height = _pair(data.get("size"))
-        if not (SMALLEST <= width <= LARGEST and SMALLEST <= height <= LARGEST):
+        if not (1 <= width <= LARGEST and 1 <= height <= LARGEST):
             raise ValueError(f"{width} by {height} is no size of a window")
         at = data.get("at")
-        return cls((width, height), _pair(at) if at is not None else None, bool(data["maximised"]))
+        size = (max(width, SMALLEST), max(height, SMALLEST))  # what was too small to work in grows
+        return cls(size, _pair(at) if at is not None else None, bool(data["maximised"]))
 
 
 def _pair(value: Any) -> tuple[int, int]:

@@ -91,10 +91,10 @@ class Preferences:
         document = self._document()
         if self.folder is None or (document, self.layout) == self._written:
             return
-        self._written = (document, self.layout)
         write_document(self.folder / FILE, document)
         if self.layout:
             write_text(self.folder / LAYOUT_FILE, self.layout)
+        self._written = (document, self.layout)
 
     # --- values of a drawing to come ----------------------------------------------------------
 
@@ -201,7 +201,10 @@ class Preferences:
         self.ran = [_like("", name) for name in names][:N_RECENT]
 
     def _take_layout_scale(self, scale: Any) -> None:
-        self.layout_scale = _like(0.0, scale)
+        scale = _like(0.0, scale)
+        if scale and not 0.1 <= scale <= 10.0:  # 0 is of a layout never kept
+            raise ValueError(f"{scale:g} is no scale")
+        self.layout_scale = scale
 
 
 def _like(pattern: Any, value: Any) -> Any:
@@ -213,7 +216,10 @@ def _like(pattern: Any, value: Any) -> Any:
         If it is of another.
     """
     if isinstance(pattern, float) and isinstance(value, int) and not isinstance(value, bool):
-        value = float(value)
+        try:
+            value = float(value)
+        except OverflowError as error:
+            raise ValueError("no finite number") from error
     if type(value) is not type(pattern):
         raise ValueError(f"{value!r} is not of the right kind")
     if isinstance(value, float) and not math.isfinite(value):

@@ -142,6 +142,7 @@ class Session:
             self.messages.say("there are no dots to relax", WARNING)
             return
         self._end_run()
+        self._asked = self.source  # not a picture that could not be read since
         assert self.drawing is not None
         frozen = replace(self.drawing, dots=editing.begin_run("Relax all"))
         self._run(
@@ -184,8 +185,11 @@ class Session:
         editing = self.editing
         if editing is None or not self.paintable or editing.in_stroke:
             return
-        if editing.history.undone is not None and editing.history.undone.is_open:
+        step = editing.history.undone
+        if step is not None and step.is_open:
             self.stop()
+            if editing.history.undone is not step:
+                return  # it had not moved anything yet, and is no step
         editing.undo()
 
     def redo(self) -> None:
@@ -233,6 +237,9 @@ class Session:
             return
         if self.drawing is None:
             self.messages.say("there is no drawing to export yet", WARNING)
+            return
+        if not self.n_dots:
+            self.messages.say("there are no dots to export", WARNING)
             return
         shown = self.editing if self.position_mm is None else None
         self.exports.start(self._snapshot(self.drawing), path, dpi, shown)

@@ -27,12 +27,15 @@ class Widgets:
     ----------
     marks : dict
         Label to (x0, y0, x1, y1), in ImGui's coordinates, of what was drawn this frame.
+    rooms : dict
+        The same of the part of the window in which each control can be seen.
     """
 
     theme: Theme
     fonts: Fonts
     scale: float
     marks: dict[str, Rect] = field(default_factory=dict)
+    rooms: dict[str, Rect] = field(default_factory=dict)
 
     @property
     def indent(self) -> float:
@@ -239,6 +242,9 @@ class Widgets:
         imgui.separator()
 
     def note(self, label: str) -> None:
-        """Remember where the last control is."""
+        """Remember where the last control is, and what can be seen of its window."""
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         self.marks[label] = (low.x, low.y, high.x, high.y)
+        draw = imgui.get_window_draw_list()
+        low, high = draw.get_clip_rect_min(), draw.get_clip_rect_max()
+        self.rooms[label] = (low.x, low.y, high.x, high.y)

@@ -42,7 +42,8 @@ def ctx(context: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> Iterator[
 
     for name in MAKERS:
         monkeypatch.setattr(moderngl.Context, name, watched(name))
-    yield context
+    with context:  # tests of other files may have made contexts of their own since
+        yield context
     assert made, "a test that takes a context and makes nothing in it"
     alive = [thing for thing in made if type(thing.mglo).__name__ != "InvalidObject"]
     assert not alive, f"not released: {alive}"

@@ -301,7 +301,7 @@ def test_an_area_smaller_than_a_dot_or_white():
     assert len(points) <= 5
     points, radii = pulse_density(darkness * 0, 5, area=Polygon([(5, 5), (40, 5), (20, 40)]))
     assert len(points) == len(radii) == 0
-    with pytest.raises(GeometryError, match="no valid polygon"):
+    with pytest.raises(GeometryError, match="area: is not valid"):
         pulse_density(darkness, 5, area=Polygon([(0, 0), (9, 9), (9, 0), (0, 9)]))
 
 

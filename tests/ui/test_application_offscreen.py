@@ -18,7 +18,7 @@ from stippler.ui.host import Host
 from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW
 from stippler.ui.place import Place
 from stippler.ui.preferences import FILE, Preferences
-from stippler.ui.theme import DARK
+from stippler.ui.theme import DARK, PANEL_WIDTH, STRIP_WIDTH
 from stippler.ui.widgets import Widgets
 
 from .conftest import Desk
@@ -259,7 +259,7 @@ def test_panels_close_open_and_keep_their_place(start: Start) -> None:
     desk.host.settle()
     assert desk.host.place("Start") == pytest.approx(place, abs=2)
     run_by_name(desk, "reset the panels")
-    assert desk.host.place("Start")[0] < 342
+    assert desk.host.place("Start")[0] < STRIP_WIDTH + PANEL_WIDTH
 
 
 def test_broken_settings_are_told_and_do_no_harm(start: Start, tmp_path: Path) -> None:
@@ -339,6 +339,17 @@ def test_what_no_hand_has_touched_is_closed_unasked(desk, picture: Path) -> None
     desk.app.window.press_close()
     desk.host.settle()
     assert desk.app.window.wants_to_close
+
+
+def test_a_picture_dropped_on_a_file_dialog_is_asked_about(desk, picture: Path) -> None:
+    painted(desk, picture)
+    desk.host.key("e", ctrl=True)
+    assert desk.app.editor.popups.dialogs.is_open
+    desk.host.drop(picture)
+    assert not desk.app.editor.popups.dialogs.is_open  # two windows fought for the keyboard
+    desk.host.click("Discard")
+    assert not desk.app.editor.popups.is_open
+    desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
 
 
 def test_closing_asks_however_often(desk, picture: Path) -> None:

@@ -74,7 +74,7 @@ def test_it_is_written_only_when_it_has_changed(tmp_path: Path) -> None:
         ("values", {"tone": "linear", "width_mm": 90, "n_dots": 1.5}),
         ("values", {"tone": "linear", "width_mm": 90, "size_range_mm": [0.3, 0.1]}),
         ("values", {"tone": "linear", "width_mm": 90, "first_dots": "sneeze"}),
-        ("window", {"size": [1, 1], "at": None, "maximised": False}),
+        ("window", {"size": [0, 700], "at": None, "maximised": False}),
         ("window", {"size": "wide"}),
         ("recent_files", [3]),
         ("recent_files", 3),

@@ -42,6 +42,7 @@ def test_closing_releases_every_gl_object(
     host.until(lambda: app.session.phase == "done", "the drawing")
     app.editor.show_panel(SHAPE)
     app.editor.look.reference_shown = True
+    app.editor.look.lens = "reduce"
     toolbox = app.editor.painting.toolbox
     toolbox.choose_kind("shape")
     toolbox.set_brush(replace(toolbox.brush, values={"along": "edge"}))
@@ -49,6 +50,7 @@ def test_closing_releases_every_gl_object(
     host.move(600, 300)
     host.settle()
     assert app.editor.canvas.patch.box is not None
+    assert app.editor.canvas.n_lens_drawn
     assert len(made) > 20
     app.close()
     alive = [thing for thing in made if type(thing.mglo).__name__ != "InvalidObject"]

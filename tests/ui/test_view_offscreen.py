@@ -10,8 +10,10 @@ import pytest
 
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.ui.layout import VIEW
+from stippler.ui.theme import PANEL_WIDTH, STRIP_WIDTH
 
 PLACE = (650.0, 330.0)
+LEFT = round(STRIP_WIDTH + PANEL_WIDTH) + 3  # of the canvas
 
 
 @pytest.fixture(autouse=True)
@@ -137,7 +139,7 @@ def test_the_lens_shows_while_its_key_is_held_and_draws_only_what_changes(opened
     y, x = np.mgrid[:700, :1000] + 0.5
     changed = (under != before).any(axis=2)
     away = np.hypot(x - PLACE[0], y - PLACE[1])
-    canvas_part = (x > 345) & (y < 665)
+    canvas_part = (x > LEFT) & (y < 665)
     assert changed[canvas_part & (away < 118)].mean() > 0.3
     assert not changed[canvas_part & (away > 142)].any()
     lenses = canvas.n_lens_drawn
@@ -154,7 +156,7 @@ def test_the_lens_shows_while_its_key_is_held_and_draws_only_what_changes(opened
     host.key_up("z")
     host.settle()
     assert editor.look.lens == "none"
-    assert np.array_equal(host.screenshot()[:660, 345:], before[:660, 345:])
+    assert np.array_equal(host.screenshot()[:660, LEFT:], before[:660, LEFT:])
 
 
 def test_the_lens_follows_a_brush_beside_it_while_it_paints(opened) -> None:

@@ -22,7 +22,7 @@ from stippler.ui.theme import LIGHT, Colour
 pytestmark = pytest.mark.window
 
 SIZE = (1280, 800)
-CANVAS = (342, 24, 1280, 771)
+CANVAS = (366, 24, 1280, 771)
 _PATIENCE_S = 60.0
 
 

@@ -1,4 +1,4 @@
-"""The dots: the plan, and starting, pausing and stopping the work on it."""
+"""The dots: how many, how large, how they are set and relaxed."""
 
 from __future__ import annotations
 
@@ -9,29 +9,18 @@ from imgui_bundle import imgui
 
 from stippler.drawing.pens import PENS
 from stippler.stippling.plan import FIRST_DOTS, GROWTHS, SIZES, STARTS
-from stippler.ui import work
-from stippler.ui.commands import Commands
 from stippler.ui.panels.fill import draw_fill
 from stippler.ui.session import Session
-from stippler.ui.theme import ICON_DICE, ICON_PAUSE, ICON_PLAY, ICON_STOP
+from stippler.ui.theme import ICON_DICE
 from stippler.ui.widgets import Widgets
 
 _FIRST_DOTS_LABELS = ("Pulse density", "Floyd–Steinberg", "Random", "Hexagonal")
 _RADII_MM = (0.02, 2.0)  # what the slider offers; typing takes more
 _USUAL_RANGE_MM = (0.12, 0.24)
 _USUAL_DOTS = 20_000
-_STAGES = {
-    work.READ: "reading the picture",
-    work.PREPARE: "preparing kernels (once)",
-    "first dots": "first dots",
-    "relax": "relaxing",
-    "tone": "matching the tone",
-    "done": "done",
-}
-_OUTCOMES = {"empty": "", "done": "done", "stopped": "stopped", "failed": "failed"}
 
 
-def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
+def draw_dots(widgets: Widgets, session: Session) -> None:
     """Draw the section; on a page without a picture, filling it stands first."""
     plan = session.plan
     changes: dict[str, Any] = {}
@@ -55,9 +44,6 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     changed = {name: value for name, value in changes.items() if value != getattr(plan, name)}
     if changed:
         session.edit_plan(**changed)
-    imgui.dummy((0.0, 2.0 * widgets.scale))
-    _draw_buttons(widgets, session, commands)
-    _draw_progress(widgets, session)
 
 
 def _draw_first_dots(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
@@ -197,62 +183,3 @@ def _draw_seed(widgets: Widgets, session: Session, changes: dict[str, Any]) -> N
     imgui.same_line()
     if widgets.icon_button("Another seed", ICON_DICE, "Another seed, by chance."):
         changes["seed"] = random.randrange(1, 1_000_000)
-
-
-def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> None:
-    label = "Restart" if session.busy else "Start"
-    if widgets.button(
-        label,
-        f"{commands['work.start'].hint}: stipple the picture with the values above.",
-        icon=ICON_PLAY,
-        width=-1.0,
-        primary=not session.busy or session.outdated,
-        enabled=session.source is not None or session.busy,
-    ):
-        commands["work.start"].run()
-    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
-    paused = session.phase == "paused"
-    if widgets.button(
-        "Resume" if paused else "Pause",
-        commands["work.pause"].hint,
-        icon=ICON_PLAY if paused else ICON_PAUSE,
-        width=width,
-        primary=paused,
-        enabled=session.busy,
-    ):
-        commands["work.pause"].run()
-    imgui.same_line(0.0, widgets.gap)
-    if widgets.button(
-        "Stop",
-        "End the work; the dots that are there stay.",
-        icon=ICON_STOP,
-        width=width,
-        enabled=session.busy,
-    ):
-        session.stop()
-    if widgets.button(
-        "Relax all",
-        f"{commands['work.relax'].hint}: moves the dots that are there, by the iterations above; "
-        "you can paint meanwhile.",
-        width=-1.0,
-        enabled=session.paintable and session.n_dots > 0,
-    ):
-        commands["work.relax"].run()
-
-
-def _draw_progress(widgets: Widgets, session: Session) -> None:
-    """Draw the bar and its line; they keep their room while there is nothing to tell."""
-    if session.busy:
-        share = session.done / session.total if session.total else -imgui.get_time()
-        widgets.progress(share, _progress_text(session))
-    elif session.outdated and session.n_dots:
-        widgets.progress(0.0, "values changed; start to use them")
-    else:
-        widgets.progress(0.0, _OUTCOMES[session.phase])
-
-
-def _progress_text(session: Session) -> str:
-    text = _STAGES.get(session.stage, session.stage)
-    if session.stage == "relax":
-        text = f"{text}, step {session.done:,} of {session.total:,}"
-    return f"{text} (paused)" if session.phase == "paused" else text

@@ -72,8 +72,11 @@ def _draw_name(widgets: Widgets, session: Session) -> None:
         widgets.caption(
             f"{columns:,} × {rows:,} px  ·  {reference.width_mm:.4g} × {reference.height_mm:.4g} mm"
         )
-    else:
+    elif session.drawing is None or (session.busy and not session.relaxing):
         widgets.caption("being read …")
+    else:
+        page = session.drawing.page
+        widgets.caption(f"no picture  ·  {page.width_mm:.4g} × {page.height_mm:.4g} mm")
 
 
 def _shortened(text: str, width: float) -> str:

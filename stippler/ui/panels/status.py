@@ -14,6 +14,8 @@ from stippler.ui.session import Session
 from stippler.ui.theme import SMALL_PX, STATUS_HEIGHT
 from stippler.ui.widgets import Widgets
 
+Field = tuple[str, float, str]  # text, width of its column in the theme's pixels, explanation
+
 
 @dataclass(frozen=True, slots=True)
 class Sight:
@@ -58,8 +60,11 @@ def draw_status(widgets: Widgets, session: Session, sight: Sight, frames: FrameR
     imgui.set_cursor_pos_y((height - imgui.get_text_line_height()) / 2)
     message = session.messages.current
     said = message is not None and message.level == INFO
-    imgui.text_unformatted(message.text if message and said else _summary(session))
-    _draw_fields(widgets, _fields(session, sight, frames))
+    text = message.text if message and said else _summary(session)
+    imgui.text_unformatted(text)
+    room = imgui.get_window_width() / widgets.scale - 48.0  # both margins, and one between
+    room -= imgui.calc_text_size(text).x / widgets.scale
+    _draw_fields(widgets, fitting(_fields(session, sight, frames), room))
     imgui.pop_font()
     imgui.end()
     imgui.pop_style_var(3)
@@ -71,8 +76,8 @@ def _summary(session: Session) -> str:
     return session.name
 
 
-def _fields(session: Session, sight: Sight, frames: FrameRate) -> list[tuple[str, float, str]]:
-    """Return text, width of its column and explanation, from the left."""
+def _fields(session: Session, sight: Sight, frames: FrameRate) -> list[Field]:
+    """Return what there is to tell, from the left; what matters least comes last."""
     at = sight.pointer_mm
     place = f"{at[0]:.1f}, {at[1]:.1f} mm" if at else "–"
     dots = f"{session.n_dots:,} dots" + ("" if sight.dots_shown else ", hidden")
@@ -99,7 +104,15 @@ def _zoom(zoom: float) -> str:
     return "1:1" if abs(zoom - 1.0) < 5e-4 else f"{zoom:.0%}"
 
 
-def _draw_fields(widgets: Widgets, fields: list[tuple[str, float, str]]) -> None:
+def fitting(fields: list[Field], room: float) -> list[Field]:
+    """Leave out the last fields, whose columns find no room beside the text at the left."""
+    fields = list(fields)
+    while fields and sum(width for _, width, _ in fields) > room:
+        fields.pop()
+    return fields
+
+
+def _draw_fields(widgets: Widgets, fields: list[Field]) -> None:
     right = imgui.get_window_width() - 16.0 * widgets.scale
     left = right - sum(width for _, width, _ in fields) * widgets.scale
     for text, width, tip in fields:

@@ -94,7 +94,7 @@ class Toolbox:
         self._last_end: PointerSample | None = None
         self._alt = False
         self._speed: tuple[Point, float, float] | None = None  # where, when, mm/s
-        self._unsaved = False
+        self._unsaved = bool(problem)  # what could be read is written anew
         self._from: Point | None = None  # where the pointer was when its heading was last looked at
         self._heading_rad = math.nan
 
@@ -106,7 +106,9 @@ class Toolbox:
         return self.brushes[self.chosen] if self.chosen >= 0 else None
 
     def choose(self, index: int) -> None:
-        """Take a brush; -1 puts it away."""
+        """Take a brush; -1 puts it away, and with the old one goes a polygon not closed yet."""
+        if isinstance(self.state, Cornering):
+            self.state = Rest()
         self.chosen = index
 
     def choose_kind(self, name: str) -> None:

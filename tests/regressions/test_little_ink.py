@@ -1,0 +1,64 @@
+"""Much asked of a small part of the page: it took all memory, or ended in no dots at all."""
+
+import numpy as np
+import pytest
+
+import stippler
+from stippler.drawing.reference import Reference
+from stippler.errors import ParameterError
+from stippler.stippling.halftone import supersampling
+from stippler.stippling.plan import Plan
+from stippler.stippling.sheet import Sheet
+from stippler.stippling.stipple import stages
+
+
+def one_black_pixel(side: int) -> np.ndarray:
+    picture = np.ones((side, side))
+    picture[side // 2, side // 2] = 0.0
+    return picture
+
+
+@pytest.mark.parametrize("n_dots", [1, 2, 3, 7, 50])
+def test_few_dots_are_all_drawn(n_dots):
+    ramp = np.linspace(0.0, 1.0, 1600).reshape(40, 40)
+    for start in ("top", "border"):
+        drawing = stippler.stipple(ramp, n_dots, iterations=0, start=start)
+        assert len(drawing.dots) == n_dots, start
+        assert drawing.notes == ()
+
+
+def test_a_halftone_of_one_black_pixel_has_bounds():
+    """20,000 dots in one of 200 x 200 pixels were 11 gigabytes of cells."""
+    darkness = (1.0 - one_black_pixel(200)).astype(np.float32)
+    density = Sheet.of(Reference(darkness, 150.0), 20_000, None, bleeds=False).density()
+    assert density.size * supersampling(density) ** 2 <= 4.5e8
+
+
+def test_what_does_not_fit_one_black_pixel_is_told():
+    drawing = stippler.stipple(one_black_pixel(600), 20_000, iterations=1, first_dots="random")
+    assert 1 <= len(drawing.dots) < 200
+    assert any("of 20,000 dots fit" in note for note in drawing.notes)
+
+
+def test_dots_without_number_are_refused():
+    plan = Plan(size_range_mm=(1e-5, 1e-5))
+    with pytest.raises(ParameterError, match=r"size range: about .* dots of this size"):
+        next(iter(stages(Reference(np.ones((9, 9), np.float32), 150.0), plan)))
+
+
+def test_dots_larger_than_the_page_are_not_called_white():
+    drawing = stippler.stipple(np.zeros((9, 9)), size_range=(500.0, 900.0), iterations=1)
+    assert len(drawing.dots) == 0
+    assert len(drawing.notes) == 1
+    assert "white" not in drawing.notes[0]
+
+
+def test_what_does_not_fit_is_told_without_a_number_asked_for():
+    drawing = stippler.stipple(one_black_pixel(600), iterations=0, first_dots="random")
+    assert any("of 20,000 dots fit" in note for note in drawing.notes)
+
+
+def test_the_number_that_is_not_asked_for_is_20_000():
+    grey = np.full((30, 40), 0.5)
+    default, asked = (stippler.stipple(grey, n, iterations=1).dots for n in (None, 20_000))
+    assert np.array_equal(default.position_mm, asked.position_mm)

@@ -1,0 +1,35 @@
+"""In a narrow window the fields of the status bar lay over the text at its left."""
+
+from pathlib import Path
+
+import pytest
+
+from stippler.app import App
+from stippler.stippling.plan import Plan
+from stippler.ui.host import Host
+from stippler.ui.panels import status
+
+
+def test_fields_without_room_are_left_out() -> None:
+    fields = [("12 dots", 96.0, ""), ("1:1", 60.0, ""), ("9 frames/s", 84.0, "")]
+    assert status.fitting(fields, 240.0) == fields
+    assert status.fitting(fields, 239.0) == fields[:2]
+    assert status.fitting(fields, 95.0) == []
+
+
+def test_a_long_message_is_read_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path))
+    monkeypatch.delenv("STIPPLER_SCALE", raising=False)
+    drawn: list[int] = []
+    draw = status._draw_fields
+    monkeypatch.setattr(status, "_draw_fields", lambda w, f: (drawn.append(len(f)), draw(w, f)))
+    app = App(Plan(), tone="linear", width_mm=100.0, size=(480, 400), offscreen=True)
+    try:
+        host = Host(app.window, app.editor, app.step)
+        app.session.messages.say(
+            "/a/path/that/takes/all/the/room/there/is/and/more/drawing.svg is written"
+        )
+        host.move(300, 200)
+    finally:
+        app.close()
+    assert drawn[-1] == 0 < drawn[0]
