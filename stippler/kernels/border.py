@@ -16,6 +16,8 @@ from stippler.kernels.simd import get
 from stippler.kernels.tables import F8, I4, Border, Field, Pads, Spot
 from stippler.kernels.voronoi import cut_cell, reach2_of_cell
 
+_ROUNDING = 1e-12  # of all that is added and taken away again in a sum
+
 
 @inline
 def gather_edges(border: Border, spot: Spot, ring: int, pads: Pads, stamp: int) -> int:
@@ -113,18 +115,24 @@ def sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
 
 @inner
 def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float, float, float]:
-    """Return the field's mass over the outline and its first moments about the dot."""
+    """Return the field's mass over the outline and its first moments about the dot.
+
+    A mass that rounding alone could make is none: its moments would lead anywhere.
+    """
     frame = field.frame
     ku, kv = 1.0 / frame[2], 1.0 / frame[3]
     px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
-    total = mu = mv = 0.0
+    total = mu = mv = gross = 0.0
     for s in range(n):
         m, mx, my = integrate_edge(
             field.sums, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
         )
         total += m
+        gross += abs(m)
         mu += mx
         mv += my
+    if total <= _ROUNDING * gross:
+        return 0.0, 0.0, 0.0
     size = frame[2] * frame[3]
     return total * size, mu * size * frame[2], mv * size * frame[3]
 

@@ -35,8 +35,8 @@ ENLARGED, REDUCED, DROPPED = 0.75, 0.25, 0.02
 
 _REACH = 200  # cells; the farthest a region looks for its charge
 _SEEDS_AT_ONCE = 250_000
-_FEW = 1_000  # dots, of which one is missed
 _LEVELS_AT_ONCE = 1_000_000  # cells that the front may pass over
+_FEW = 1_000  # dots, of which one is missed
 _VARIANTS = 8
 _SKEW = {"circular": 0.7, "triangular": 0.15}
 _SLOPE = {"circular": 0.8, "triangular": 0.2}  # of the undulating front
