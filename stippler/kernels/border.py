@@ -138,14 +138,14 @@ def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float,
 
 
 @inline
-def free_share(out: F8, n_border: int, du: float, dv: float, margin: float) -> float:
-    """Return the share of the move (du, dv) that stays clear of the border segments.
+def free_share(out: F8, n: int, du: float, dv: float, margin: float) -> float:
+    """Return the share of the move (du, dv) that stays clear of the first n segments.
 
-    1 if the straight way ends well inside; else half of the way to the first border met; 0 if
+    1 if the straight way ends well inside; else half of the way to the first of them met; 0 if
     even that comes nearer to it than `margin`.
     """
     share = 1.0
-    for s in range(n_border):
+    for s in range(n):
         au, av = out[s, 0], out[s, 1]
         eu, ev = out[s, 2] - au, out[s, 3] - av
         length = math.sqrt(eu * eu + ev * ev)
@@ -158,5 +158,27 @@ def free_share(out: F8, n_border: int, du: float, dv: float, margin: float) -> f
         t = max((before - margin) / (before - after), 0.0)
         along = (eu * (t * du - au) + ev * (t * dv - av)) / length
         if -margin <= along <= length + margin:
+            share = min(share, 0.5 * t)
+    return share
+
+
+@inner
+def share_before_walls(edge: F8, near: I4, n_near: int, spot: Spot, du: float, dv: float) -> float:
+    """Return the share of the move (du, dv) that crosses none of the edges listed to the outside.
+
+    1 if it crosses none; else half of the way to the first.
+    """
+    share = 1.0
+    for s in range(n_near):
+        e = near[s]
+        au, av = edge[e, 0] - spot.x, edge[e, 1] - spot.y
+        eu, ev = edge[e, 2] - edge[e, 0], edge[e, 3] - edge[e, 1]
+        before = ev * au - eu * av  # left is positive
+        after = before + eu * dv - ev * du
+        if before < 0.0 or after >= 0.0:
+            continue
+        t = before / (before - after)
+        along = eu * (t * du - au) + ev * (t * dv - av)
+        if 0.0 <= along <= eu * eu + ev * ev:
             share = min(share, 0.5 * t)
     return share

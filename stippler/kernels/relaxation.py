@@ -19,6 +19,7 @@ from stippler.kernels.border import (
     outline_of_cell,
     outline_of_lanes,
     outline_within,
+    share_before_walls,
     sum_area,
     sum_field,
 )
@@ -107,7 +108,7 @@ def _relax(
         if grid.whole[c, 3] == 1:
             cell = spot.first_cell + spot.iy * spot.nx + spot.ix
             free = max(border.clear[cell] - 1, 0) * spot.h
-        m, is_packed, n_border, n, reach2, free = _cell_of_dot(
+        m, is_packed, n_border, n, reach2, free, n_near = _cell_of_dot(
             U, V, N, dots, grid, border, spot, free, pads
         )
         moves.free[i] = free
@@ -127,6 +128,9 @@ def _relax(
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
             share = free_share(pads.out, n_border, du, dv, margin)
             du, dv = share * du, share * dv
+        if n:  # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
+            share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
+            du, dv = share * du, share * dv
         moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
         moves.y[i] = min(max(y + dv, grid.real[c, 5]), grid.real[c, 7])
         moves.gone[i] = math.sqrt(du * du + dv * dv)
@@ -137,7 +141,7 @@ def _relax(
 def _cell_of_dot(
     U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
     pads: Pads,
-) -> tuple[int, bool, int, int, float, float]:  # fmt: skip
+) -> tuple[int, bool, int, int, float, float, int]:  # fmt: skip
     """Compute a dot's cell; `free` is a distance within which no border edge lies.
 
     Returns
@@ -148,6 +152,8 @@ def _cell_of_dot(
         Segments in ``pads.out`` if the border cuts the cell, see `outline_piece`, else 0.
     reach2, free
         Squared distance of the farthest corner; what is now known to be free of border edges.
+    n_near
+        Border edges in ``pads.near``, of all that were looked at for the outline.
     """
     crowd = -ZERO - 1
     ring = ZERO + 1
@@ -158,7 +164,7 @@ def _cell_of_dot(
     is_packed = True
     m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
-        n_border = n = ZERO
+        n_border = n = n_near = ZERO
         reach2, is_swept = 0.0, False
         if is_packed:
             is_swept = ring == SWEEP_FROM and free == math.inf
@@ -196,7 +202,7 @@ def _cell_of_dot(
         if is_last:
             break
         ring += 1
-    return m, is_packed, n_border, n, reach2, free
+    return m, is_packed, n_border, n, reach2, free, n_near
 
 
 @merged
@@ -205,7 +211,7 @@ def _way_to_centroid(
     over: float, i: int, cells: F8, pads: Pads,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
-    second = 0.0
+    second, is_whole = 0.0, n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
         area, du, dv = moments_of(U, V, m)
         area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
@@ -226,6 +232,9 @@ def _way_to_centroid(
         area = du = dv = 0.0
     if len(cells):
         cells[i, 0], cells[i, 1], cells[i, 2], cells[i, 3] = area, du, dv, second
+    if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
+        share = free_share(pads.out, n, du, dv, 0.0)
+        du, dv = share * du, share * dv
     if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
         du, dv = over * du, over * dv
     return du, dv

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from stippler.kernels.border import outline_of_lanes, sum_field
+from stippler.kernels.border import free_share, outline_of_lanes, sum_field
 from stippler.kernels.jit import ZERO, inline, inner, kernel
 from stippler.kernels.relaxation import INNER
 from stippler.kernels.simd import (
@@ -92,6 +92,9 @@ def _way_to_centroid(
     if not area > 0.0:
         return 0.0, 0.0
     du, dv = du / area, dv / area
+    if len(field.sums):  # next to nothing can have its centroid anywhere, by rounding
+        share = free_share(out, m, du, dv, 0.0)
+        du, dv = share * du, share * dv
     if over != 1.0:
         for k in range(m):
             a, b = dots.x[stars.around[i, k]] - x, dots.y[stars.around[i, k]] - y
