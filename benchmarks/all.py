@@ -14,7 +14,7 @@ from rich.table import Table
 
 from benchmarks.figures import Figure
 from stippler.errors import ParameterError
-from stippler.kernels.pool import n_threads
+from stippler.kernels.machine.pool import n_threads
 
 TOPICS = (
     "programs",

@@ -11,12 +11,12 @@ import numpy as np
 from benchmarks.figures import Figure, median_s
 from stippler.brushes.brush import Brush
 from stippler.brushes.kinds import KINDS
-from stippler.brushes.stroke import PointerSample, Stamp
-from stippler.brushes.stroking import Stroke
+from stippler.brushes.stroke import Stroke
+from stippler.brushes.stroke_path import PointerSample, Stamp
 from stippler.brushes.tip import Tip
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
 from stippler.drawing.reference import Reference
 
 _SIDE_MM = 200.0
@@ -36,7 +36,7 @@ def figures(quick: bool = False) -> list[Figure]:
     return [*_stamps(n), *_history(n), *_memory(n)]
 
 
-def _editing(n: int) -> Editing:
+def _document(n: int) -> Document:
     rng = np.random.default_rng(1)
     drawing = Drawing.blank(Page(_SIDE_MM, _SIDE_MM))
     ramp = np.tile(np.linspace(0, 1, 1000, dtype=np.float32), (1000, 1))
@@ -46,7 +46,7 @@ def _editing(n: int) -> Editing:
     corner = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)
     points = (corner + rng.uniform(0.1, 0.9, corner.shape)) * (_SIDE_MM / side)
     drawing.dots = Dots.round(points, 0.1)
-    return Editing(drawing)
+    return Document(drawing)
 
 
 def _drawn_tip() -> Tip:
@@ -60,8 +60,8 @@ def _drawn_tip() -> Tip:
 
 def _stamps(n: int) -> list[Figure]:
     """Time single stamps in the middle of a stroke, each at another place."""
-    editing = _editing(n)
-    radius = math.sqrt(500 / len(editing.dots) / math.pi) * _SIDE_MM
+    document = _document(n)
+    radius = math.sqrt(500 / len(document.dots) / math.pi) * _SIDE_MM
     found = []
     for kind in KINDS:
         if kind.rhythm not in ("arc", "time"):
@@ -69,25 +69,25 @@ def _stamps(n: int) -> list[Figure]:
         for values in _VARIANTS.get(kind.name, [{}]):
             brush = Brush(kind.name, kind.name, radius, _HARD, values=values)
             name = " ".join([kind.name, *(str(v) for v in values.values() if isinstance(v, str))])
-            times = _times(editing, brush)
+            times = _times(document, brush)
             found.append(
                 Figure(
-                    f"stamp on 500 dots in {len(editing.dots) // 1000}k: {name}",
+                    f"stamp on 500 dots in {len(document.dots) // 1000}k: {name}",
                     statistics.median(times) * 1e3, "ms", 1.0, 0.5,
                     note=f"95 % within {np.percentile(times, 95) * 1e3:.2f} ms",
                 )
             )  # fmt: skip
     drawn = Brush("size", "size", 1.2 * radius, _drawn_tip())
-    median = statistics.median(_times(editing, drawn))
+    median = statistics.median(_times(document, drawn))
     found.append(
         Figure("the same: size enlarge, soft tip of 40 corners", median * 1e3, "ms", 1.0, 0.5)
     )
     return found
 
 
-def _times(editing: Editing, brush: Brush) -> list[float]:
+def _times(document: Document, brush: Brush) -> list[float]:
     step = 1.0 / 60.0 if brush.kind != "relax" else 1.0 / float(brush.value("per_s"))
-    stroke = Stroke(editing, brush, PointerSample(20.0, 20.0), 1)
+    stroke = Stroke(document, brush, PointerSample(20.0, 20.0), 1)
     times = []
     for k in range(120):
         x = 20.0 + 1.3 * brush.radius_mm * (k % 30)
@@ -101,19 +101,19 @@ def _times(editing: Editing, brush: Brush) -> list[float]:
 
 
 def _history(n: int) -> list[Figure]:
-    editing = _editing(n)
+    document = _document(n)
     rows = np.arange(50_000)
 
     def stroke() -> None:
-        editing.begin("move")
-        editing.move(rows, editing.dots.position_mm[rows] + 0.01)
-        editing.change("radius_mm", rows, np.full(len(rows), 0.2, np.float32))
-        editing.commit()
+        document.begin("move")
+        document.move(rows, document.dots.position_mm[rows] + 0.01)
+        document.change("radius_mm", rows, np.full(len(rows), 0.2, np.float32))
+        document.commit()
 
     def erase() -> None:
-        editing.begin("erase")
-        editing.remove(rows)
-        editing.commit()
+        document.begin("erase")
+        document.remove(rows)
+        document.commit()
 
     out = []
     for name, act in (("move and resize", stroke), ("erase", erase)):
@@ -121,15 +121,15 @@ def _history(n: int) -> list[Figure]:
         for _ in range(9):
             act()
             begin = time.perf_counter()
-            editing.undo()
+            document.undo()
             times.append(time.perf_counter() - begin)
         out.append(
             Figure(
-                f"undo of a stroke on 50k dots in {len(editing.dots) // 1000}k: {name}",
+                f"undo of a stroke on 50k dots in {len(document.dots) // 1000}k: {name}",
                 statistics.median(times) * 1e3, "ms", 10.0, 3.0,
             )
         )  # fmt: skip
-    whole = _editing(n)
+    whole = _document(n)
     frozen = whole.begin_run("relax")
     moved = frozen.position_mm * 0.999
     merge = median_s(lambda: whole.merge(moved), repeats=9)
@@ -138,10 +138,10 @@ def _history(n: int) -> list[Figure]:
 
 
 def _memory(n: int) -> list[Figure]:
-    editing = _editing(n)
+    document = _document(n)
     return [
         Figure(
             "memory for each dot while edited, without history and GPU buffers",
-            editing.n_bytes / len(editing.dots), "bytes", 200.0, 100.0,
+            document.n_bytes / len(document.dots), "bytes", 200.0, 100.0,
         )
     ]  # fmt: skip

@@ -215,9 +215,9 @@ def _own_and_all(
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the medians, own and whole, of still frames and of moving ones; ms."""
     from stippler.drawing.reference import Reference
+    from stippler.jobs.work import Source, Work
     from stippler.jobs.worker import Update
     from stippler.stippling.stipple import Progress
-    from stippler.ui.work import Source, Work
 
     rng = np.random.default_rng(1)
     place = rng.random((_N_DOTS, 2)) * (148.0, 111.0)

@@ -13,9 +13,9 @@ from PIL import Image
 from benchmarks.figures import Figure, median_s
 from stippler.drawing.reference import Reference
 from stippler.stippling.halftone import FirstDots, pulse_density, supersampling
+from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import Plan
 from stippler.stippling.radii import solve_radii
-from stippler.stippling.sheet import Sheet
 from stippler.stippling.stipple import stages
 
 _PICTURE = Path(__file__).parents[1] / "tests/data/sphere_ramp.png"
@@ -26,8 +26,8 @@ def figures(quick: bool = False) -> list[Figure]:
     """Time pulse-density modulation and tone solving on the sphere and ramp, 1 megapixel."""
     repeats = 3 if quick else 9
     darkness = read_darkness()
-    sheet = Sheet.of(Reference(darkness, 1000.0), _DOTS, None, bleeds=False)
-    density = sheet.density()
+    raster = PageRaster.of(Reference(darkness, 1000.0), _DOTS, None, bleeds=False)
+    density = raster.density()
     *_, relaxed = stages(Reference(darkness, 1000.0), Plan(n_dots=_DOTS), snapshots=False)
     points = relaxed.position_mm
     results = [
@@ -45,7 +45,8 @@ def figures(quick: bool = False) -> list[Figure]:
         ),
         Figure(
             "tone of 60,000 relaxed dots solved",
-            1e3 * median_s(lambda: list(solve_radii(points, sheet.darkness, sheet.rule)), repeats),
+            1e3
+            * median_s(lambda: list(solve_radii(points, raster.darkness, raster.rule)), repeats),
             "ms",
             150.0,
         ),

@@ -24,7 +24,7 @@ from stippler.app import App
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
+from stippler.ui.window.scripted_host import Host
 
 _SIZE = (1280, 800)
 _PAGE = Page(200.0, 150.0)
@@ -56,10 +56,10 @@ class _Desk:
         session = self.app.session
         session.new(_PAGE)
         self.host.until(lambda: session.paintable, "an empty page")
-        assert session.editing is not None
-        session.editing.begin("even dots")
-        session.editing.insert(_even_dots(n))
-        session.editing.commit()
+        assert session.document is not None
+        session.document.begin("even dots")
+        session.document.insert(_even_dots(n))
+        session.document.commit()
 
     def point(self, x_mm: float, y_mm: float) -> tuple[int, int]:
         """Move the pointer to a place of the page; return where that is in the window."""

@@ -16,7 +16,7 @@ from stippler.drawing.reference import Reference
 from stippler.resources import assets
 from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress, stages
-from stippler.stippling.tone import Rule
+from stippler.stippling.tone import DotRule
 
 SPHERE = Path(__file__).parents[1] / "tests/data/sphere_ramp.png"
 SAMPLES = ("ammonite.png", "honey-bee.jpg", "sandstone.jpg", "step-wedge.png")
@@ -84,7 +84,7 @@ def score(darkness: NDArray[np.float64], result: Progress) -> dict[str, Any]:
 
 def single_radius(darkness: NDArray[np.float64], n: int) -> float:
     """Return the one radius with which about n dots meet the tone."""
-    wanted = float(Rule(1.0, 1.0).density(darkness).sum())
+    wanted = float(DotRule(1.0, 1.0).density(darkness).sum())
     return float(np.sqrt(wanted / n))
 
 

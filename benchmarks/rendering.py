@@ -26,7 +26,7 @@ from stippler.drawing.preview import Footprint, Preview
 from stippler.drawing.shape_change import ShapeChange, to
 from stippler.files.svg import svg_chunks
 from stippler.headless import is_software, open_context, open_gpu_context
-from stippler.kernels.dot_shape import bezier_outlines
+from stippler.kernels.shapes.dot_shape import bezier_outlines
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -36,7 +36,7 @@ UHD = (3840, 2160)
 
 _PICTURE = """
 import sys
-from stippler.kernels.lean import skip_blas
+from stippler.kernels.machine.numba_import import skip_blas
 skip_blas()  # as the command line does
 from benchmarks.rendering import drawing
 from stippler.export import save

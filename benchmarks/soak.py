@@ -206,12 +206,12 @@ def _pictures(folder: Path, rng: np.random.Generator) -> list[Path]:
 
 def check_drawing(app: App) -> None:
     """Raise if the drawing is not whole: ids unique and found, dots on the page, kept by place."""
-    editing = app.session.editing
-    if editing is None:
+    document = app.session.document
+    if document is None:
         return
-    dots, page = editing.dots, editing.drawing.page
+    dots, page = document.dots, document.drawing.page
     assert len(np.unique(dots.id)) == len(dots), "ids are not unique"
-    assert np.array_equal(editing.rows(dots.id), np.arange(len(dots))), "ids are not found"
+    assert np.array_equal(document.rows(dots.id), np.arange(len(dots))), "ids are not found"
     assert np.isfinite(dots.position_mm).all(), "a place is not finite"
     size = (page.width_mm, page.height_mm)
     on_page = (dots.position_mm >= 0) & (dots.position_mm <= size)
@@ -220,7 +220,7 @@ def check_drawing(app: App) -> None:
     x, y = dots.position_mm.T
     box = (0.2 * size[0], 0.3 * size[1], 0.6 * size[0], 0.7 * size[1])
     inside = (x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])
-    assert np.array_equal(editing.in_box(box), np.flatnonzero(inside)), "the index has lost dots"
+    assert np.array_equal(document.in_box(box), np.flatnonzero(inside)), "the index has lost dots"
 
 
 class Soak:
@@ -261,8 +261,8 @@ class Soak:
                 check_drawing(self.app)
         self.hand.let_go()
         check_drawing(self.app)
-        if self.app.session.editing is not None:
-            self.n_steps += len(self.app.session.editing.history.steps)
+        if self.app.session.document is not None:
+            self.n_steps += len(self.app.session.document.history.steps)
         self.app.session.new(Page(100.0, 70.0))
         self._wait()
         gc.collect()

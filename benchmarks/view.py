@@ -51,17 +51,17 @@ def _lens(repeats: int) -> list[Figure]:
 
 def _open(app: Any) -> None:
     """Give the editor a drawing, as a finished job would."""
-    from stippler.drawing.editing import Editing
+    from stippler.drawing.document import Document
 
     app.session.drawing = drawing(_N_DOTS)
-    app.session.editing = Editing(app.session.drawing)
+    app.session.document = Document(app.session.drawing)
     app.session.revision += 1
     app.session.phase = "done"
 
 
 def _mover(app: Any) -> Any:
     """Return a call that moves the pointer by a pixel of the strongest lens and draws the frame."""
-    from stippler.ui.events import Moved
+    from stippler.editor.events import Moved
 
     at = [400.0]
 

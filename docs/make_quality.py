@@ -72,7 +72,7 @@ for the true union of the discs; the column *exact* is `tone_rmse` against that 
 finely enough for the difference not to matter.
 
 Where a picture runs over the edge of the page, dots relaxed on the page alone would line up half a
-spacing inside its edge; so they are relaxed on a sheet with a bleed and then trimmed. The edge then
+spacing inside its edge; so they are relaxed on a page with a bleed and then trimmed. The edge then
 cuts dots as chance will have it, and the ink along it is too dark here and too light there, over a
 few dots; so those dots move across it, by six tenths of their radius at most, until the ink along
 the edge meets the tone from end to end. Pairs closer than half as far as their seventh neighbours
@@ -135,11 +135,11 @@ def _strip(images: list[Image.Image], columns: int, width: int) -> Image.Image:
     height = round(width * images[0].height / images[0].width)
     rows = -(-len(images) // columns)
     size = (columns * (width + GAP) - GAP, rows * (height + GAP) - GAP)
-    sheet = Image.new("L", size, 255)
+    raster = Image.new("L", size, 255)
     for k, image in enumerate(images):
         at = (k % columns * (width + GAP), k // columns * (height + GAP))
-        sheet.paste(image.resize((width, height), Image.Resampling.BOX), at)
-    return sheet
+        raster.paste(image.resize((width, height), Image.Resampling.BOX), at)
+    return raster
 
 
 def _spectra(folder: Path) -> str:

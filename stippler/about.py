@@ -9,8 +9,8 @@ from importlib import metadata
 
 from stippler import __version__, resources
 from stippler.errors import DisplayError
-from stippler.kernels.cache import cache_root
-from stippler.kernels.pool import n_threads
+from stippler.kernels.machine.cache import cache_root
+from stippler.kernels.machine.pool import n_threads
 from stippler.warm import is_warm
 
 _LIBRARIES = (

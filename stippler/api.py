@@ -210,7 +210,7 @@ def fill(
     -------
     (k, 2) float64, in the area's unit
     """
-    from stippler.stippling.starts import fill_area
+    from stippler.stippling.initial_points import fill_area
 
     return fill_area(_polygon(area), n, arrangement, seed)
 

@@ -7,15 +7,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from stippler.editor.garbage_collection import Garbage
+from stippler.editor.session import Session
+from stippler.jobs.work import Work, make_ready, stipple_picture
 from stippler.jobs.worker import Worker
 from stippler.settings import settings_folder
-from stippler.ui.editor import Editor
-from stippler.ui.garbage import Garbage
-from stippler.ui.place import Place
+from stippler.ui.editor_window import Editor
 from stippler.ui.preferences import Preferences
-from stippler.ui.session import Session
-from stippler.ui.window import Window
-from stippler.ui.work import Work, make_ready, stipple_picture
+from stippler.ui.window.placement import Place
+from stippler.ui.window.window import Window
 from stippler.warm import is_warm
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import typer
 from typer.exceptions import TyperException
 
 from stippler.errors import ParameterError, StipplerError
-from stippler.kernels.lean import skip_blas
+from stippler.kernels.machine.numba_import import skip_blas
 from stippler.units import DEFAULT_WIDTH_MM
 
 if TYPE_CHECKING:
@@ -222,7 +222,7 @@ def stats(
     .csv, --reference, --width and --tone say what it was drawn from.
     """
     _check_page(tone, width)
-    from stippler import statistics
+    from stippler import stats as statistics
 
     if file.suffix.lower() == ".csv":
         given = _given(context) - {"file", "as_json", "reference", "width_mm", "tone"}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from stippler.drawing.drawing import Drawing
 from stippler.errors import OutputError, ParameterError
-from stippler.files.output import check_writable, replacing
+from stippler.files.atomic_write import check_writable, replacing
 from stippler.units import px_per_mm
 
 DEFAULT_DPI = 300.0

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.errors import DisplayError
-from stippler.kernels.cache import all_digest, cache_root
-from stippler.kernels.lean import skip_blas
+from stippler.kernels.machine.cache import all_digest, cache_root
+from stippler.kernels.machine.numba_import import skip_blas
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
@@ -46,7 +46,7 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     """Name what compiles, in the order a first drawing needs it, and how to make it compile."""
     import numpy as np
 
-    from stippler.brushes.rehearsal import rehearse
+    from stippler.brushes.warm_up import warm_up_brushes
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.stippling.plan import FIRST_DOTS, Plan
@@ -63,7 +63,7 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "clusters", _relax_a_cluster
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
-    yield "brushes", rehearse
+    yield "brushes", warm_up_brushes
     yield "files", lambda: _write(draw())
 
 

@@ -17,7 +17,7 @@ from stippler.stippling.plan import FIRST_DOTS
 
 def compiled():
     found = set()
-    for module in pkgutil.iter_modules(stippler.kernels.__path__, "stippler.kernels."):
+    for module in pkgutil.walk_packages(stippler.kernels.__path__, "stippler.kernels."):
         for name, value in vars(importlib.import_module(module.name)).items():
             if hasattr(value, "nopython_signatures"):
                 found |= {f"{name} {signature}" for signature in value.signatures}

@@ -3,7 +3,7 @@
 // In polar coordinates of the unsqueezed shape, radius(phi)^2 = 1 + sum over k = 2..9 of
 // x_k cos(k phi) + y_k sin(k phi), so its area is pi whatever the coefficients. They come from the
 // dot's seed by integer hashing; the sum of their lengths is roughness * MAX_ROUGH < 1, so the
-// outline never crosses itself. The same formula in Python: stippler/kernels/dot_shape.py.
+// outline never crosses itself. The same formula in Python: stippler/kernels/shapes/dot_shape.py.
 
 const int N_HARMONICS = 8;
 const float MAX_ROUGH = 0.9;

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.coverage import cover
-from stippler.kernels.pool import run_ranges
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.rasterize_discs import cover
 
 _MOST_CELLS = 60_000_000
 
@@ -58,7 +58,7 @@ def draw_ink(
     row_of = np.searchsorted(at[order, 1], np.arange(h * zoom + 1)).astype(np.int64)
     row_of[0], row_of[-1] = 0, len(order)
     field = np.empty((h * zoom, w * zoom), np.float32)
-    run_ranges(
+    parallel_for(
         cover, h * zoom, at, np.asarray(radii, np.float64) * zoom, order, row_of, field, grain=64
     )
     ink: NDArray[np.float32] = field.reshape(h, zoom, w, zoom).mean(axis=(1, 3))

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Self
 
 from stippler.brushes.kinds import KINDS, Kind, Parameter, Value, kind_of
-from stippler.brushes.stroke import SMOOTHINGS, SmoothingKind
+from stippler.brushes.stroke_path import SMOOTHINGS, SmoothingKind
 from stippler.brushes.tip import Tip
 from stippler.errors import ParameterError
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from stippler.brushes import move, scatter, shape, size
 from stippler.brushes.brush import Brush
-from stippler.brushes.cells import areas_of, centroids_of
 from stippler.brushes.jitter import jitter
-from stippler.brushes.stroke import Stamp
+from stippler.brushes.local_cells import areas_of, centroids_of
+from stippler.brushes.stroke_path import Stamp
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
-from stippler.drawing.editing import Editing
 from stippler.drawing.reference import Reference
 from stippler.drawing.store import Rows
 from stippler.errors import ParameterError
@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 class Touch:
     """A stamp on a drawing: the dots under the tip, and how much of the effect each gets."""
 
-    editing: Editing
+    document: Document
     brush: Brush
     stamp: Stamp
     rng: np.random.Generator
@@ -42,12 +42,12 @@ class Touch:
     @property
     def position_mm(self) -> Floats:
         """Of the dots under the tip; a copy."""
-        return np.asarray(self.editing.dots.position_mm[self.rows])
+        return np.asarray(self.document.dots.position_mm[self.rows])
 
     @property
     def free(self) -> Touch:
         """The same stamp on the free dots only."""
-        free = ~self.editing.dots.fixed[self.rows]
+        free = ~self.document.dots.fixed[self.rows]
         if free.all():
             return self
         return touch_of(self, self.rows[free], self.weight[free])
@@ -68,7 +68,7 @@ class Touch:
     @property
     def reference(self) -> Reference:
         """The reference, for effects that go by it."""
-        reference = self.editing.drawing.reference
+        reference = self.document.drawing.reference
         if reference is None:
             raise ParameterError(
                 "goes by the picture, and there is none", self.brush.name, "open a picture first"
@@ -78,7 +78,7 @@ class Touch:
 
 def touch_of(touch: Touch, rows: Rows, weight: Floats) -> Touch:
     """Return a touch on other rows."""
-    return Touch(touch.editing, touch.brush, touch.stamp, touch.rng, rows, weight, touch.count)
+    return Touch(touch.document, touch.brush, touch.stamp, touch.rng, rows, weight, touch.count)
 
 
 # --- dots come and go ---------------------------------------------------------------------------
@@ -100,7 +100,7 @@ def spray(touch: Touch) -> None:
         points = points[touch.rng.random(len(points)) < touch.reference.at(points)]
     apart_mm = touch.number("apart_mm")
     if apart_mm > 0.0 and len(points):
-        points = points[touch.editing.apart(points, apart_mm)]
+        points = points[touch.document.apart(points, apart_mm)]
     if len(points):
         _insert(touch, points)
 
@@ -108,26 +108,26 @@ def spray(touch: Touch) -> None:
 def _insert(touch: Touch, points: Floats) -> None:
     dots = Dots.round(points, touch.number("dot_mm"))
     dots.seed[:] = touch.rng.integers(0, 2**32, len(dots), np.uint32)
-    touch.editing.insert(dots)
+    touch.document.insert(dots)
 
 
 def remove(touch: Touch) -> None:
     """Remove the nearest dot."""
-    row = touch.editing.nearest(*touch.at_mm, touch.brush.radius_mm)
+    row = touch.document.nearest(*touch.at_mm, touch.brush.radius_mm)
     if row is not None:
-        touch.editing.remove(np.array([row]))
+        touch.document.remove(np.array([row]))
 
 
 def thin(touch: Touch) -> None:
     """Remove the dots that are due."""
     n = touch.count.take(touch.stamp.dt, touch.stamp.pressure)
     if n:
-        touch.editing.remove(touch.rows[scatter.choose(n, touch.weight, touch.rng)])
+        touch.document.remove(touch.rows[scatter.choose(n, touch.weight, touch.rng)])
 
 
 def erase(touch: Touch) -> None:
     """Remove all dots."""
-    touch.editing.remove(touch.rows)
+    touch.document.remove(touch.rows)
 
 
 def fix(touch: Touch) -> None:
@@ -141,8 +141,8 @@ def unfix(touch: Touch) -> None:
 
 
 def _set_fixed(touch: Touch, fixed: bool) -> None:
-    rows = touch.rows[touch.editing.dots.fixed[touch.rows] != fixed]
-    touch.editing.change("fixed", rows, np.full(len(rows), fixed))
+    rows = touch.rows[touch.document.dots.fixed[touch.rows] != fixed]
+    touch.document.change("fixed", rows, np.full(len(rows), fixed))
 
 
 # --- dots move ----------------------------------------------------------------------------------
@@ -152,10 +152,10 @@ def relax(touch: Touch) -> None:
     """Move dots towards the centroids of their cells."""
     touch = touch.free
     reference = touch.reference if touch.brush.value("by_tone") else None
-    centroid = centroids_of(touch.editing, touch.rows, reference)
+    centroid = centroids_of(touch.document, touch.rows, reference)
     share = np.minimum(touch.weight * touch.share("strength"), 1.0)[:, None]
     old = touch.position_mm
-    touch.editing.move(touch.rows, old + share * (centroid - old))
+    touch.document.move(touch.rows, old + share * (centroid - old))
 
 
 def shake(touch: Touch) -> None:
@@ -165,12 +165,12 @@ def shake(touch: Touch) -> None:
         return
     scale: Floats | float
     if touch.brush.value("measure") == "cell":
-        scale = np.sqrt(areas_of(touch.editing, touch.rows))
+        scale = np.sqrt(areas_of(touch.document, touch.rows))
     else:
         reach = 2.0 * touch.brush.tip.reach(touch.brush.radius_mm)
-        scale = float(touch.editing.nearest_distances(touch.rows, reach).mean())
+        scale = float(touch.document.nearest_distances(touch.rows, reach).mean())
     moved = jitter(touch.position_mm, touch.weight, scale * touch.share("amount"), touch.rng)
-    touch.editing.move(touch.rows, moved)
+    touch.document.move(touch.rows, moved)
 
 
 def push(touch: Touch) -> None:
@@ -178,7 +178,7 @@ def push(touch: Touch) -> None:
     touch = touch.free
     strength = touch.share("strength")
     step = (touch.stamp.dx * strength, touch.stamp.dy * strength)
-    touch.editing.move(touch.rows, move.push(touch.position_mm, touch.weight, step))
+    touch.document.move(touch.rows, move.push(touch.position_mm, touch.weight, step))
 
 
 def comb(touch: Touch) -> None:
@@ -194,7 +194,7 @@ def comb(touch: Touch) -> None:
         touch.number("teeth_mm"),
         touch.share("strength"),
     )
-    touch.editing.move(touch.rows, moved)
+    touch.document.move(touch.rows, moved)
 
 
 # --- dots change their looks --------------------------------------------------------------------
@@ -204,21 +204,21 @@ def resize(touch: Touch) -> None:
     """Change radii."""
     change = shape.size_change(touch.brush)
     if change is not None:
-        shape.reshape(touch.editing, touch.rows, change, touch.weight)
+        shape.reshape(touch.document, touch.rows, change, touch.weight)
         return
-    area = areas_of(touch.editing, touch.rows)
+    area = areas_of(touch.document, touch.rows)
     target = size.tone_radius(touch.position_mm, area, touch.reference)
-    old = touch.editing.dots.radius_mm[touch.rows].astype(np.float64)
+    old = touch.document.dots.radius_mm[touch.rows].astype(np.float64)
     new = size.pulled(old, touch.weight, target, touch.share("amount"))
-    touch.editing.change("radius_mm", touch.rows, new.astype(np.float32))
+    touch.document.change("radius_mm", touch.rows, new.astype(np.float32))
 
 
 def deform(touch: Touch) -> None:
     """Change shapes."""
-    reference = touch.editing.drawing.reference
+    reference = touch.document.drawing.reference
     change = shape.form_change(touch.brush, touch.stamp.direction_rad, reference)
     if change is not None:
-        shape.reshape(touch.editing, touch.rows, change, touch.weight)
+        shape.reshape(touch.document, touch.rows, change, touch.weight)
 
 
 EFFECTS: dict[str, Callable[[Touch], None]] = {

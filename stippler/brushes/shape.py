@@ -9,10 +9,10 @@ import math
 from typing import Any
 
 from stippler.brushes.brush import Brush
-from stippler.drawing.editing import Editing
+from stippler.drawing.document import Document
 from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
-from stippler.drawing.shape_change import Edges, Floats, ShapeChange, Step, to
+from stippler.drawing.shape_change import Edges, Floats, LinearChange, ShapeChange, to
 from stippler.drawing.store import Rows
 from stippler.errors import ParameterError
 
@@ -32,7 +32,7 @@ def size_change(brush: Brush) -> ShapeChange | None:
 def resized(percent: float) -> ShapeChange:
     """Return what enlarges radii by a percentage, or below 0 takes that back."""
     factor = 1.0 + abs(percent) / 100.0
-    return ShapeChange(radius=Step(factor if percent > 0.0 else 1.0 / factor))
+    return ShapeChange(radius=LinearChange(factor if percent > 0.0 else 1.0 / factor))
 
 
 def form_change(
@@ -52,9 +52,9 @@ def form_change(
     """
     how, amount = brush.value("how"), float(brush.value("amount")) / 100.0
     if how in ("roughen", "smooth"):
-        return ShapeChange(roughness=Step(addend=amount if how == "roughen" else -amount))
+        return ShapeChange(roughness=LinearChange(addend=amount if how == "roughen" else -amount))
     if how == "round":
-        return ShapeChange(elongation=Step(addend=-amount))
+        return ShapeChange(elongation=LinearChange(addend=-amount))
     along = brush.value("along")
     if along == "random":
         return ShapeChange(stretch=amount, angle_rad=0.0, scatter_rad=math.pi / 2)
@@ -96,9 +96,9 @@ def preview_of(
 
 
 def reshape(
-    editing: Editing, rows: Rows, change: ShapeChange, weight: float | Floats = 1.0
+    document: Document, rows: Rows, change: ShapeChange, weight: float | Floats = 1.0
 ) -> None:
     """Change the shapes of some dots, within a stroke."""
-    new: Any = change.of(editing.dots.take(rows), weight)
+    new: Any = change.of(document.dots.take(rows), weight)
     for field, values in new.items():
-        editing.change(field, rows, values)
+        document.change(field, rows, values)

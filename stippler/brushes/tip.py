@@ -147,7 +147,9 @@ class Tip:
 
 def _depth(points: Points, corners: Points) -> NDArray[np.float64]:
     """Return the distance to a polygon's border, negative outside it."""
-    from stippler.kernels.polygon import find_depths  # late: the first frame waits for no numba
+    from stippler.kernels.cells.polygon import (
+        find_depths,  # late: the first frame waits for no numba
+    )
 
     out = np.empty(len(points))
     find_depths(np.ascontiguousarray(points), corners, out)

@@ -28,14 +28,14 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Placed:
+class DotRows:
     """Whole dots, and the rows they stand in."""
 
     dots: Dots
     rows: NDArray[np.int64]
 
     @classmethod
-    def none(cls) -> Placed:
+    def none(cls) -> DotRows:
         """Make an empty set."""
         return cls(Dots.none(), np.empty(0, np.int64))
 
@@ -72,7 +72,7 @@ class Edit:
         As the history shows it.
     changes : mapping of field to Change
         Only of dots that are there before and after.
-    removed, inserted : Placed
+    removed, inserted : DotRows
         With their rows before and after.
     shifted : Shift
         Rows of the dots that moved to close gaps; so undoing restores the order, too.
@@ -80,8 +80,8 @@ class Edit:
 
     label: str
     changes: Mapping[str, Change]
-    removed: Placed
-    inserted: Placed
+    removed: DotRows
+    inserted: DotRows
     shifted: Shift
 
     def inverse(self) -> Edit:
@@ -131,7 +131,7 @@ class Edit:
             for name in names
         }
         removed, inserted = (
-            Placed(
+            DotRows(
                 Dots(**{f.name: part(kind, f.name) for f in fields(Dots)}),  # type: ignore[arg-type]
                 part(kind, "rows"),  # type: ignore[arg-type]
             )

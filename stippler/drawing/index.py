@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.store import Rows
-from stippler.kernels.dot_lists import (
+from stippler.kernels.dots.list_grid import (
     keep_apart,
     link_all,
     nearest_distances,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots
-from stippler.drawing.edit import FIELDS, Change, Edit, Placed, Shift
+from stippler.drawing.edit import FIELDS, Change, DotRows, Edit, Shift
 from stippler.drawing.store import GONE, DotStore, Rows
 
 _BIT = {name: 1 << k for k, name in enumerate(FIELDS)}
@@ -28,7 +28,7 @@ class Recorder:
         self._store, self.label = store, label
         self._seen = np.zeros(store.next_id + 1024, np.uint16)  # by id: fields, row, new
         self._before: dict[str, list[_Pair]] = {name: [] for name in FIELDS}
-        self._removed: list[Placed] = []
+        self._removed: list[DotRows] = []
         self._inserted: list[NDArray[np.int64]] = []
         self._rows: list[_Pair] = []
 
@@ -57,7 +57,7 @@ class Recorder:
         """Remove rows, sorted and each once; return all rows that have changed."""
         ids = self._store.dots.id[rows]
         old = (self._seen[ids] & _NEW) == 0
-        gone = Placed(self._store.dots.take(rows[old]), rows[old].astype(np.int64))
+        gone = DotRows(self._store.dots.take(rows[old]), rows[old].astype(np.int64))
         shift = self._store.remove(rows)
         self._removed.append(gone)
         self._note_rows(gone.dots.id, gone.rows)
@@ -96,10 +96,10 @@ class Recorder:
 
     def _all_removed(
         self, lost: dict[str, _Pair], first_ids: NDArray[np.int64], first_rows: Rows
-    ) -> Placed:
+    ) -> DotRows:
         """Join the removed dots, with the values and rows they had at the beginning."""
         if not any(len(part) for part in self._removed):
-            return Placed.none()
+            return DotRows.none()
         dots = Dots(
             **{
                 f.name: np.concatenate([getattr(part.dots, f.name) for part in self._removed])
@@ -112,14 +112,14 @@ class Recorder:
             getattr(dots, name)[np.searchsorted(dots.id, ids)] = before
         known = np.argsort(first_ids)
         rows = first_rows[known][np.searchsorted(first_ids[known], dots.id)]
-        return Placed(dots, rows)
+        return DotRows(dots, rows)
 
-    def _all_inserted(self) -> Placed:
+    def _all_inserted(self) -> DotRows:
         if not self._inserted:
-            return Placed.none()
+            return DotRows.none()
         rows = self._store.rows(np.concatenate(self._inserted))
         rows = rows[rows != GONE]
-        return Placed(self._store.dots.take(rows), rows)
+        return DotRows(self._store.dots.take(rows), rows)
 
     def _all_shifted(self, ids: NDArray[np.int64], before: Rows) -> Shift:
         after = self._store.rows(ids)

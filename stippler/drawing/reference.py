@@ -77,6 +77,8 @@ class Reference:
         position_mm : (n, 2) float64
             Points beside the field take that of its border.
         """
-        from stippler.kernels.sampling import sampled  # numba: late, for the first frame's sake
+        from stippler.kernels.tone.sampling import (
+            sampled,  # numba: late, for the first frame's sake
+        )
 
         return sampled(self.darkness, 1.0 / self.pixel_mm, position_mm)

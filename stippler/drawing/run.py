@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stippler.drawing.dots import Dots
-from stippler.drawing.edit import Change, Edit, Placed, Shift
+from stippler.drawing.edit import Change, DotRows, Edit, Shift
 from stippler.drawing.history import Step
 
 
@@ -41,4 +41,4 @@ class Run:
         ):
             if which.any():
                 changes[name] = Change(self.ids[which], before[which], after[which])
-        return Edit(self.step.label, changes, Placed.none(), Placed.none(), Shift.none())
+        return Edit(self.step.label, changes, DotRows.none(), DotRows.none(), Shift.none())

@@ -29,7 +29,7 @@ _N_AROUND = 8  # places around a dot where darkness is looked at
 _LONGER_WAY = 0.45  # of a half turn; no angle that anyone sets lies just there
 
 
-class Step(NamedTuple):
+class LinearChange(NamedTuple):
     """A value becomes ``factor * old + addend``, and up to ``spread`` more by the dot's dice."""
 
     factor: float = 1.0
@@ -37,12 +37,12 @@ class Step(NamedTuple):
     spread: float = 0.0
 
 
-KEEP = Step()
+KEEP = LinearChange()
 
 
-def to(value: float, spread: float = 0.0) -> Step:
+def to(value: float, spread: float = 0.0) -> LinearChange:
     """Set a value, or one between it and so much more."""
-    return Step(0.0, value, spread)
+    return LinearChange(0.0, value, spread)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +76,9 @@ class ShapeChange:
 
     Attributes
     ----------
-    radius : Step
+    radius : LinearChange
         Its addend is in mm; it has no spread.
-    elongation, roughness : Step
+    elongation, roughness : LinearChange
     angle_rad : float or None
         The direction dots turn to, the shorter way; None keeps their own.
     edges : Edges or None
@@ -90,9 +90,9 @@ class ShapeChange:
         are stretched, and not otherwise.
     """
 
-    radius: Step = KEEP
-    elongation: Step = KEEP
-    roughness: Step = KEEP
+    radius: LinearChange = KEEP
+    elongation: LinearChange = KEEP
+    roughness: LinearChange = KEEP
     angle_rad: float | None = None
     edges: Edges | None = None
     scatter_rad: float = 0.0
@@ -166,20 +166,20 @@ class ShapeChange:
             goal = np.where(np.isnan(found), angle, found)
         else:
             goal = angle if self.angle_rad is None else np.full(len(angle), self.angle_rad)
-        return goal + (2.0 * _dice(dots.seed, _ANGLE) - 1.0) * self.scatter_rad
+        return goal + (2.0 * hash_unit(dots.seed, _ANGLE) - 1.0) * self.scatter_rad
 
 
 def _stepped(
     old: NDArray[np.float32],
     seed: NDArray[np.uint32],
-    step: Step,
+    step: LinearChange,
     weight: Floats,
     limits: tuple[float, float],
     salt: int,
 ) -> Floats:
     goal = old.astype(np.float64) * step.factor + step.addend
     if step.spread:
-        goal += step.spread * _dice(seed, salt)
+        goal += step.spread * hash_unit(seed, salt)
     return np.clip(old + weight * (goal - old), *limits)
 
 
@@ -188,7 +188,7 @@ def _shorter(turn: Floats) -> Floats:
     return turn - math.pi * np.floor(turn / math.pi + _LONGER_WAY)
 
 
-def _dice(seed: NDArray[np.uint32], salt: int) -> Floats:
+def hash_unit(seed: NDArray[np.uint32], salt: int) -> Floats:
     """Return a number in [0, 1) for each seed; other salts give other numbers."""
     x = np.asarray(seed, np.uint32) ^ np.uint32(salt)
     for shift, factor in ((16, 0x7FEB352D), (15, 0x846CA68B)):

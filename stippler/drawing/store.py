@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots
-from stippler.drawing.edit import Edit, Placed, Shift
+from stippler.drawing.edit import DotRows, Edit, Shift
 from stippler.errors import GeometryError
 
 Rows = NDArray[np.int64]
@@ -89,7 +89,7 @@ class DotStore:
         """Add dots in new rows at the end; return those."""
         n = len(self)
         rows = np.arange(n, n + len(dots), dtype=np.int64)
-        self._put(Placed(dots, rows), n + len(dots))
+        self._put(DotRows(dots, rows), n + len(dots))
         return rows
 
     def remove(self, rows: Rows) -> Shift:
@@ -140,7 +140,7 @@ class DotStore:
             room[shift.after] = room[shift.before]
         self._row_of[shift.ids] = shift.after
 
-    def _put(self, placed: Placed, n_after: int) -> None:
+    def _put(self, placed: DotRows, n_after: int) -> None:
         self._grow(n_after)
         for name in _NAMES:
             self._room[name][placed.rows] = getattr(placed.dots, name)

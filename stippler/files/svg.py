@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.errors import ParameterError
-from stippler.kernels import svg_text
+from stippler.kernels.shapes import svg_text
 
 DECIMALS = 3
 MAX_DECIMALS = 6
@@ -53,7 +53,7 @@ def svg_chunks(drawing: Drawing, *, decimals: int | None = None) -> Iterator[byt
     Notes
     -----
     Dots of an area are one group; in it the round ones come first, then smooth ellipses, then rough
-    outlines. A path keeps within 1 % of the radius of the formula in `kernels/dot_shape.py`.
+    outlines. A path keeps within 1 % of the radius of the formula in `kernels/shapes/dot_shape.py`.
     """
     if decimals is None:
         decimals = _decimals_for(drawing.dots)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from stippler.errors import StipplerError
-from stippler.kernels.pool import stand_back
+from stippler.kernels.machine.pool import stand_back
 
 Result = TypeVar("Result")
 

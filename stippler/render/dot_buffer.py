@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots, first_seeds
-from stippler.kernels import gpu_dots
-from stippler.kernels.dot_shape import check_shapes
-from stippler.kernels.overlap import shares_of_union
+from stippler.kernels.shapes import gpu_dots
+from stippler.kernels.shapes.dot_shape import check_shapes
+from stippler.kernels.tone.union_share import shares_of_union
 
 Origin = tuple[float, float]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from stippler.camera import Camera, Size
 from stippler.drawing.preview import Preview
 from stippler.drawing.shape_change import MAX_RADIUS_MM, ShapeChange
-from stippler.kernels import gpu_dots
-from stippler.kernels.dot_shape import MAX_ELONGATION, MAX_ROUGH
+from stippler.kernels.shapes import gpu_dots
+from stippler.kernels.shapes.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.paper import Color

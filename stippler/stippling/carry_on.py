@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
-from stippler.stippling.finish import part_close
+from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import Plan
+from stippler.stippling.postprocess import part_close
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import Relaxation
-from stippler.stippling.sheet import Sheet
-from stippler.stippling.stipple import Progress, sheet_for, step_weights
+from stippler.stippling.stipple import Progress, raster_for, step_weights
 
 
 def carry_on(
@@ -34,38 +34,38 @@ def carry_on(
         As `stages` does, with the dots in the order given; the stage is "relax", then "tone",
         and radii are those given until the last, which has the stage "done".
     """
-    sheet = sheet_for(reference, plan)
-    radii = np.asarray(radius_mm, np.float64) / sheet.pixel_mm
-    points = np.clip(position_mm, 0.0, sheet.size_mm) / sheet.pixel_mm
-    for k, moved in enumerate(_relaxed(sheet, plan, points, n_done), start=n_done + 1):
+    raster = raster_for(reference, plan)
+    radii = np.asarray(radius_mm, np.float64) / raster.pixel_mm
+    points = np.clip(position_mm, 0.0, raster.size_mm) / raster.pixel_mm
+    for k, moved in enumerate(_relaxed(raster, plan, points, n_done), start=n_done + 1):
         points = moved
-        yield Progress("relax", k, plan.iterations, *sheet.on_page(points, radii))
+        yield Progress("relax", k, plan.iterations, *raster.on_page(points, radii))
     if plan.weighted and n_done < plan.iterations and plan.sizes == "tone":
-        points = part_close(points, sheet)
-    inked = sheet.onto_ink(points)
+        points = part_close(points, raster)
+    inked = raster.onto_ink(points)
     points = inked if len(inked) == len(points) else points
     if plan.sizes == "tone":
-        for share, solved in solve_radii(points, sheet.darkness, sheet.rule):
-            yield Progress("tone", round(1000 * share), 1000, *sheet.on_page(points, radii))
+        for share, solved in solve_radii(points, raster.darkness, raster.rule):
+            yield Progress("tone", round(1000 * share), 1000, *raster.on_page(points, radii))
             if share == 1.0:
                 radii = solved
-    yield Progress("done", 1, 1, *sheet.on_page(points, radii))
+    yield Progress("done", 1, 1, *raster.on_page(points, radii))
 
 
 def _relaxed(
-    sheet: Sheet, plan: Plan, points: NDArray[np.float64], n_done: int
+    raster: PageRaster, plan: Plan, points: NDArray[np.float64], n_done: int
 ) -> Iterator[NDArray[np.float64]]:
     """Yield the dots after each step that is left, in pixels."""
     if not len(points):
         return
-    w, h = sheet.size_mm
-    at = points * sheet.pixel_mm
+    w, h = raster.size_mm
+    at = points * raster.pixel_mm
     to_edge = np.minimum(np.minimum(at[:, 0], w - at[:, 0]), np.minimum(at[:, 1], h - at[:, 1]))
-    beside = to_edge < sheet.bleed * sheet.pixel_mm
+    beside = to_edge < raster.bleed * raster.pixel_mm
     page = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
-    for n_steps, field in step_weights(sheet, plan, n_done):
-        engine = Relaxation(points * sheet.pixel_mm, page, beside, density=field)
+    for n_steps, field in step_weights(raster, plan, n_done):
+        engine = Relaxation(points * raster.pixel_mm, page, beside, density=field)
         for _ in range(n_steps):
             engine.step()
-            points = np.asarray(engine.points) / sheet.pixel_mm
+            points = np.asarray(engine.points) / raster.pixel_mm
             yield points

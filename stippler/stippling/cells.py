@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.crowds import CROWD, LEAF, bound_crowds, split_crowds
-from stippler.kernels.grid import find_grid_cells, sort_by_grid_cell
-from stippler.kernels.pool import run_ranges
-from stippler.kernels.relaxation import TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.simd import LANES, SCAN
-from stippler.kernels.stars import check_stars, renumber_stars, verify_stars
-from stippler.kernels.tables import Dots, Grid, Moves, Stars
+from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
+from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
+from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
+from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
+from stippler.kernels.cells.tables import Dots, Grid, Moves, Stars
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.compartments import Compartments
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
@@ -149,7 +149,7 @@ class Cells:
             dots = dots._replace(fixed=np.empty(0, np.bool_))
         cap, n = CORNER_CAP, self.n if is_all else len(which)
         while n:
-            done = run_ranges(
+            done = parallel_for(
                 relax_dots, n, cap, which, is_all, dots, self._table, self.grid.border, field,
                 self.over, new, cells, stars,
                 grain=GRAIN if is_all else FEW, chunks=8, cancel=cancel,
@@ -174,7 +174,7 @@ class Cells:
         new = new._replace(kind=self._kind_of_cell, free=self._free_of_dot)
         todo = np.empty(self.n, np.uint8)
         stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
-        done = run_ranges(
+        done = parallel_for(
             verify_stars, self.n, self._dots, self._table, self._field, self.over, new, stars,
             todo, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
@@ -191,7 +191,7 @@ class Cells:
                 break
             rows = np.flatnonzero((stars.suspect != 0) & ~settled).astype(np.int32)
             stars.suspect[:] = 0
-            run_ranges(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
+            parallel_for(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
             which = rows[todo[rows] != 0]
         return done
 
@@ -202,7 +202,7 @@ class Cells:
         n = self.n
         cell_of_dot, order = np.empty(n, np.int32), np.empty(n, np.int32)
         cell_start = np.empty_like(self._cell_start)
-        done = run_ranges(
+        done = parallel_for(
             find_grid_cells, n, self.xs, self.ys, self.compartment_of_dot, self.grid.real,
             self.grid.whole, cell_of_dot, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
@@ -223,7 +223,7 @@ class Cells:
             new_row[order] = np.arange(n, dtype=np.int32)
             star = sorted_rows["_star"] = np.empty_like(self._star)
             args = (renumber_stars, n, order, new_row, self._star, star)
-            if not run_ranges(*args, grain=GRAIN, cancel=cancel):
+            if not parallel_for(*args, grain=GRAIN, cancel=cancel):
                 return False
         for name in names:
             if cancel is not None and cancel():
@@ -247,7 +247,7 @@ class Cells:
         if not len(crowd):
             return crowd, _NO_ROWS, _NO_CELLS
         args = (split_crowds, len(crowd), crowd, cell_start, self.xs, self.ys, order)
-        run_ranges(*args, grain=1, chunks=16)
+        parallel_for(*args, grain=1, chunks=16)
         halvings = np.ceil(np.log2(n_dots[crowd] / LEAF)).astype(np.int64)
         ends = np.cumsum(2 << halvings)
         tree_of_cell = np.full(len(n_dots), -1, np.int32)
@@ -257,7 +257,7 @@ class Cells:
     def _bound_crowds(self) -> None:
         """Fit the trees of crowded grid cells to where their dots are now."""
         if len(self._crowd):
-            run_ranges(
+            parallel_for(
                 bound_crowds, len(self._crowd), self._crowd, self._tree_of_cell, self._cell_start,
                 self.xs, self.ys, self._node, grain=1, chunks=16,
             )  # fmt: skip

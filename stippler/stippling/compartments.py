@@ -13,7 +13,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.polygon import orient
 
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.given import floats
+from stippler.stippling.validation import floats
 
 Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.errors import ParameterError
-from stippler.kernels.field import sum_rows
-from stippler.kernels.pool import run_ranges
-from stippler.kernels.tables import Field
-from stippler.stippling.given import floats
+from stippler.kernels.cells.field import sum_rows
+from stippler.kernels.cells.tables import Field
+from stippler.kernels.machine.pool import parallel_for
+from stippler.stippling.validation import floats
 
 _DENSEST = 1e30  # sums of the kernels' float32 go no further
 
@@ -83,7 +83,7 @@ class DensityField:
 
 
 def running_sums(density: DensityField | None) -> Field:
-    """Return running sums of mass and moment along rows, see `stippler.kernels.field`.
+    """Return running sums of mass and moment along rows, see `stippler.kernels.cells.field`.
 
     Without a density they are empty.
     """
@@ -92,6 +92,6 @@ def running_sums(density: DensityField | None) -> Field:
     h, w = density.values.shape
     sums = np.empty((h, w + 1, 2))
     values = np.ascontiguousarray(density.values, np.float32)
-    run_ranges(sum_rows, h, values, sums, grain=64)
+    parallel_for(sum_rows, h, values, sums, grain=64)
     sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
     return Field(sums, np.array([*density.origin_mm, *sides]))

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.grid import measure_clearance, spread_edges
-from stippler.kernels.tables import Border
+from stippler.kernels.cells.grid import measure_clearance, spread_edges
+from stippler.kernels.cells.tables import Border
 from stippler.stippling.compartments import RECTANGLE, Compartments
 
 DOTS_PER_CELL = 3.0
@@ -16,7 +16,7 @@ DOTS_PER_CELL = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DotGrid:
-    """Grid cells of all compartments, numbered through; see `stippler.kernels.grid`.
+    """Grid cells of all compartments, numbered through; see `stippler.kernels.cells.grid`.
 
     Attributes
     ----------

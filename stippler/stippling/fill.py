@@ -11,8 +11,8 @@ from stippler.errors import ParameterError
 from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
 
 if TYPE_CHECKING:
+    from stippler.drawing.document import Document
     from stippler.drawing.drawing import Drawing
-    from stippler.drawing.editing import Editing
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +49,14 @@ class Filling:
             raise ParameterError(f"{self.seed} is no seed", "fill", "give 0 or more")
 
 
-def fill_drawing(drawing: Drawing, editing: Editing, filling: Filling, area: int = 0) -> int:
+def fill_drawing(drawing: Drawing, document: Document, filling: Filling, area: int = 0) -> int:
     """Fill an area of a drawing, as one edit; return how many dots were added."""
     from stippler.drawing.dots import Dots
-    from stippler.stippling.starts import fill_area
+    from stippler.stippling.initial_points import fill_area
 
     outline = drawing.areas[area].outline_mm
     points = fill_area(outline, filling.n_dots, filling.arrangement, filling.seed)
-    editing.begin("Fill")
-    editing.insert(Dots.round(points, filling.radius_mm, area=area))
-    editing.commit()
+    document.begin("Fill")
+    document.insert(Dots.round(points, filling.radius_mm, area=area))
+    document.commit()
     return len(points)

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.errors import ParameterError
-from stippler.kernels.pulse_density import fill_cells, grow
-from stippler.kernels.seeds import (
+from stippler.kernels.halftone.grow_regions import fill_cells, grow
+from stippler.kernels.halftone.scan_order import (
     FRONT_STEP,
     along_front,
     chamfer,
@@ -25,7 +25,7 @@ from stippler.kernels.seeds import (
     outside_polygon,
 )
 from stippler.stippling.plan import GROWTHS, STARTS
-from stippler.stippling.tone import Rule
+from stippler.stippling.tone import DotRule
 
 CELLS_PER_DOT = 14.0
 """Super-sampling aims at this many cells in the smallest region."""
@@ -117,7 +117,7 @@ def outside_area(field: NDArray[np.float32], area: Polygon | MultiPolygon) -> No
 
 
 def sizes_by_region(
-    region_px: NDArray[np.float32], rule: Rule
+    region_px: NDArray[np.float32], rule: DotRule
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Size dots of one pulse as the paper does: by how far their regions had to grow.
 
@@ -125,7 +125,7 @@ def sizes_by_region(
     ----------
     region_px : (n,) float32
         Area of each dot's region.
-    rule : Rule
+    rule : DotRule
         Even, in pixels: the radius of an ordinary dot, and the range that none leaves.
 
     Returns

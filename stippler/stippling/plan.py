@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from stippler.errors import ParameterError
-from stippler.stippling.given import whole
+from stippler.stippling.validation import whole
 
 FIRST_DOTS = ("pulse-density", "floyd-steinberg", "random", "hexagonal")
 """Ways to place the first dots."""

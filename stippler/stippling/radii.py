@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.grid import sort_by_grid_cell
-from stippler.kernels.pool import run_ranges
-from stippler.kernels.radii import (
+from stippler.kernels.cells.grid import sort_by_grid_cell
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.cell_ink import MAX_CORNERS, build_cells, sum_darkness
+from stippler.kernels.tone.radii import (
     compare_sizes,
     even_sizes,
     find_room,
@@ -18,8 +19,7 @@ from stippler.kernels.radii import (
     pass_on,
     sum_room,
 )
-from stippler.kernels.tone import MAX_CORNERS, build_cells, sum_darkness
-from stippler.stippling.tone import Rule
+from stippler.stippling.tone import DotRule
 
 _DOTS_AT_ONCE = 8_000
 _ROUNDS = 4  # of passing on ink that a dot cannot lay down
@@ -32,7 +32,7 @@ _REACH = 7.0  # mean spacings; a cell reaches no farther from its dot to any sid
 def solve_radii(
     points: NDArray[np.float64],
     darkness: NDArray[np.float32],
-    rule: Rule,
+    rule: DotRule,
     n_dots: int | None = None,
 ) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Find radii at which the union of the discs meets the darkness.
@@ -44,7 +44,7 @@ def solve_radii(
     ----------
     points : (n, 2) float64, pixels of `darkness`
     darkness : (h, w) float32, read-only
-    rule : Rule
+    rule : DotRule
         Its range of radii, in pixels.
     n_dots : int, optional
         How many dots there are, where `points` are only those of a part of the page.
@@ -106,7 +106,7 @@ class _Cells:
         """Build the cells of dots sorted by grid cell; yield the share done."""
         n, (h, w) = len(xy), darkness.shape
         sums = np.empty((h, w + 1, 2))
-        run_ranges(sum_darkness, h, darkness, sums, grain=64)
+        parallel_for(sum_darkness, h, darkness, sums, grain=64)
         yield 0.0
         results = self.corners, self.beyond, self.n_corners, self.asked
         for first in range(0, n, _DOTS_AT_ONCE):
@@ -115,12 +115,12 @@ class _Cells:
             def part(start: int, stop: int, first: int = first) -> None:
                 build_cells(first + start, first + stop, xy, cell_start, frame, sums, *results)
 
-            run_ranges(part, last - first)
+            parallel_for(part, last - first)
             yield last / n
 
     def fit(self, low: float, high: float) -> None:
         """Find radii within a range, and the ink `left` that it does not allow."""
-        run_ranges(
+        parallel_for(
             fit_radii,
             len(self.asked),
             self.corners,
@@ -138,8 +138,10 @@ class _Cells:
         """Let neighbours of like tone even out their sizes."""
         n, beyond, count = len(self.asked), self.beyond, self.n_corners
         odd, tone, new = np.empty(n), np.empty(n), np.empty(n)
-        run_ranges(compare_sizes, n, self.corners, beyond, count, self.asked, self.radii, odd, tone)
-        run_ranges(
+        parallel_for(
+            compare_sizes, n, self.corners, beyond, count, self.asked, self.radii, odd, tone
+        )
+        parallel_for(
             even_sizes, n, beyond, count, self.radii, odd, tone, _GAIN, _CONTRAST, self.asked, new
         )
         self.asked = new
@@ -148,9 +150,9 @@ class _Cells:
         """Ask neighbours for the ink that a dot's range does not allow."""
         n, corners, beyond, count = len(self.asked), self.corners, self.beyond, self.n_corners
         room, given, new = np.empty((n, 2)), np.empty(n), np.empty(n)
-        run_ranges(find_room, n, corners, beyond, count, low, high, self.radii, self.left, room)
-        run_ranges(sum_room, n, beyond, count, self.left, room, given)
-        run_ranges(pass_on, n, beyond, count, room, given, self.asked, new)
+        parallel_for(find_room, n, corners, beyond, count, low, high, self.radii, self.left, room)
+        parallel_for(sum_room, n, beyond, count, self.left, room, given)
+        parallel_for(pass_on, n, beyond, count, room, given, self.asked, new)
         self.asked = new
 
 

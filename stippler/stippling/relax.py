@@ -16,7 +16,7 @@ from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
-from stippler.stippling.given import floats, whole
+from stippler.stippling.validation import floats, whole
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 

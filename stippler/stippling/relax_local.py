@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.errors import ParameterError
-from stippler.kernels.buckets import find_in_circle, place_dots
-from stippler.kernels.pool import run_ranges
-from stippler.kernels.relaxation import TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.simd import LANES, SCAN
-from stippler.kernels.tables import Dots, Grid, Moves, Stars
+from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
+from stippler.kernels.cells.tables import Dots, Grid, Moves, Stars
+from stippler.kernels.dots.bucket_grid import find_in_circle, place_dots
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.cells import CORNER_CAP
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import DensityField, running_sums
@@ -151,7 +151,7 @@ class LocalRelaxation:
         """Compute cells and where they take their dots; measure them by area if there is room."""
         field, cap = running_sums(None) if len(cells) else self._field, CORNER_CAP
         while len(slots):
-            run_ranges(
+            parallel_for(
                 relax_dots, len(slots), cap, slots, False, self._dots, self._table,
                 self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, grain=128, chunks=2,
             )  # fmt: skip

@@ -14,13 +14,13 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.reference import Reference
 from stippler.stippling.compartments import polygon_of
-from stippler.stippling.finish import at_edge, even_rim, part_close
 from stippler.stippling.halftone import DROPPED, outside_area, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
+from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
+from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
+from stippler.stippling.postprocess import at_edge, even_rim, part_close
 from stippler.stippling.radii import solve_radii
-from stippler.stippling.sheet import Sheet
-from stippler.stippling.starts import floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.tone import Shortfall, shortfall
 
 if TYPE_CHECKING:
@@ -74,9 +74,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     Progress
         The last one has the stage "done".
     """
-    sheet = sheet_for(reference, plan)
+    raster = raster_for(reference, plan)
     if plan.sizes == "regions":
-        yield from _stages_by_region(sheet, plan, snapshots)
+        yield from _stages_by_region(raster, plan, snapshots)
         return
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
 
@@ -85,34 +85,34 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     ) -> Progress:
         shown = nothing
         if snapshots:
-            px = sheet.trim(px, plan.n_asked)
-            shown = sheet.on_page(px, sheet.radii(px))
+            px = raster.trim(px, plan.n_asked)
+            shown = raster.on_page(px, raster.radii(px))
         return Progress(stage, done, total, *shown, movement_mm)
 
     points = np.empty((0, 2))
     yield snapshot("first dots", 0, 1000, points)  # nothing yet, but a chance to cancel
-    for share, points in _first_dots(sheet, plan):
+    for share, points in _first_dots(raster, plan):
         yield snapshot("first dots", round(1000 * share), 1000, points)
     if len(points) and plan.iterations:
-        for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
+        for k, (moved, movement_mm) in enumerate(_relax(raster, plan, points)):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
-    points = sheet.trim(points, plan.n_asked)
+    points = raster.trim(points, plan.n_asked)
     if plan.weighted and plan.iterations:
-        for share, finished in _finish(sheet, points):
+        for share, finished in _finish(raster, points):
             points = finished
             yield snapshot("tone", round(200 * share), 1000, points)
-    points = sheet.onto_ink(points)
+    points = raster.onto_ink(points)
     radii = np.empty(0)
-    for share, solved in solve_radii(points, sheet.darkness, sheet.rule):
+    for share, solved in solve_radii(points, raster.darkness, raster.rule):
         radii = solved
         if share < 1.0:
             yield snapshot("tone", round(200 + 800 * share), 1000, points)
-    lack = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_asked)
-    yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=lack)
+    lack = shortfall(raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked)
+    yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=lack)
 
 
-def _stages_by_region(sheet: Sheet, plan: Plan, snapshots: bool) -> Iterator[Progress]:
+def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterator[Progress]:
     """Draw as the paper does: sizes follow from the regions, and stay with their dots."""
 
     def snapshot(
@@ -120,21 +120,23 @@ def _stages_by_region(sheet: Sheet, plan: Plan, snapshots: bool) -> Iterator[Pro
         movement_mm: float = math.nan,
     ) -> Progress:  # fmt: skip
         n = len(px) if snapshots else 0
-        return Progress(stage, done, total, *sheet.on_page(px[:n], radii[:n]), movement_mm)
+        return Progress(stage, done, total, *raster.on_page(px[:n], radii[:n]), movement_mm)
 
     points, radii = np.empty((0, 2)), np.empty(0)
     yield snapshot("first dots", 0, 1000, points, radii)
-    for share, first in pulses(sheet.density(), plan.growth, start=plan.start, seed=plan.seed):
-        radii, keep = sizes_by_region(first.region_px, sheet.rule)
+    for share, first in pulses(raster.density(), plan.growth, start=plan.start, seed=plan.seed):
+        radii, keep = sizes_by_region(first.region_px, raster.rule)
         points, radii = first.position_px[keep], radii[keep]
         yield snapshot("first dots", round(1000 * share), 1000, points, radii)
     if len(points) and plan.iterations:
-        for k, (moved, movement_mm) in enumerate(_relax(sheet, plan, points)):
+        for k, (moved, movement_mm) in enumerate(_relax(raster, plan, points)):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
-    points = sheet.onto_ink(sheet.trim(points, None))
-    notes = shortfall(sheet.darkness, sheet.rule, sheet.pixel_mm, len(points), plan.n_asked).notes
-    yield Progress("done", 1, 1, *sheet.on_page(points, radii), shortfall=Shortfall(notes=notes))
+    points = raster.onto_ink(raster.trim(points, None))
+    notes = shortfall(
+        raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked
+    ).notes
+    yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=Shortfall(notes=notes))
 
 
 def notes_on(result: Progress) -> tuple[str, ...]:
@@ -187,10 +189,10 @@ def pulse_density(
     reference = Reference(darkness, float(darkness.shape[1]))
     if area is not None:
         return _pulses_inside(reference, plan, area)
-    sheet = sheet_for(reference, plan)
-    *_, (_, points) = _first_dots(sheet, plan)
-    points = sheet.onto_ink(sheet.trim(points, None))
-    return points * sheet.pixel_mm, sheet.radii(points) * sheet.pixel_mm
+    raster = raster_for(reference, plan)
+    *_, (_, points) = _first_dots(raster, plan)
+    points = raster.onto_ink(raster.trim(points, None))
+    return points * raster.pixel_mm, raster.radii(points) * raster.pixel_mm
 
 
 def _pulses_inside(
@@ -202,10 +204,10 @@ def _pulses_inside(
     outside_area(field, area)
     if not field.any():
         return np.empty((0, 2)), np.empty(0)
-    sheet = sheet_for(
+    raster = raster_for(
         Reference(field, reference.width_mm), plan
     )  # so sized that n dots fill the area
-    whole = replace(sheet_for(reference, plan), rule=sheet.rule)
+    whole = replace(raster_for(reference, plan), rule=raster.rule)
     inside = affinity.scale(area, 1 / whole.pixel_mm, 1 / whole.pixel_mm, origin=(0.0, 0.0))
     *_, (_, first) = pulses(
         whole.density(), plan.growth, start=plan.start, seed=plan.seed, inside=inside
@@ -214,10 +216,10 @@ def _pulses_inside(
     return points * whole.pixel_mm, whole.radii(points) * whole.pixel_mm
 
 
-def sheet_for(reference: Reference, plan: Plan) -> Sheet:
-    """Prepare the sheet that a plan lays its dots out on."""
+def raster_for(reference: Reference, plan: Plan) -> PageRaster:
+    """Prepare the raster that a plan lays its dots out on."""
     by_region = plan.sizes == "regions"
-    return Sheet.of(
+    return PageRaster.of(
         reference,
         plan.n_asked,
         plan.size_range_mm,
@@ -226,14 +228,14 @@ def sheet_for(reference: Reference, plan: Plan) -> Sheet:
     )
 
 
-def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.float64]]]:
+def _first_dots(raster: PageRaster, plan: Plan) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Yield the share done and the dots so far, in pixels from the page's corner."""
-    density = sheet.density()
+    density = raster.density()
     yield 0.0, np.empty((0, 2))
     if plan.first_dots == "pulse-density":
         halftone = pulses(density, plan.growth, start=plan.start, seed=plan.seed)
         for share, first in halftone:
-            yield share, first.position_px - sheet.bleed
+            yield share, first.position_px - raster.bleed
         return
     if plan.first_dots == "floyd-steinberg":
         points = floyd_steinberg(density)
@@ -241,26 +243,28 @@ def _first_dots(sheet: Sheet, plan: Plan) -> Iterator[tuple[float, NDArray[np.fl
         points = random_dots(density, plan.seed)
     else:
         points = hexagonal(density)
-    yield 1.0, points - sheet.bleed
+    yield 1.0, points - raster.bleed
 
 
 def _relax(
-    sheet: Sheet, plan: Plan, points: NDArray[np.float64]
+    raster: PageRaster, plan: Plan, points: NDArray[np.float64]
 ) -> Iterator[tuple[NDArray[np.float64], float]]:
-    """Run Lloyd steps on the whole sheet; yield points in pixels and their mean movement in mm."""
+    """Run Lloyd steps on the whole raster; yield points in pixels and their mean movement in mm."""
     from stippler.stippling.relax import Relaxation
 
-    outline = sheet.outline_mm()
-    for n_steps, field in step_weights(sheet, plan):
-        at = np.clip(points * sheet.pixel_mm, outline[0], outline[2])
+    outline = raster.outline_mm()
+    for n_steps, field in step_weights(raster, plan):
+        at = np.clip(points * raster.pixel_mm, outline[0], outline[2])
         engine = Relaxation(at, outline, density=field)
         for _ in range(n_steps):
             report = engine.step()
-            points = np.asarray(engine.points) / sheet.pixel_mm
+            points = np.asarray(engine.points) / raster.pixel_mm
             yield points, float(report.mean_mm)
 
 
-def step_weights(sheet: Sheet, plan: Plan, n_done: int = 0) -> Iterator[tuple[int, DensityField]]:
+def step_weights(
+    raster: PageRaster, plan: Plan, n_done: int = 0
+) -> Iterator[tuple[int, DensityField]]:
     """Yield how many steps are left after those that are done, and by what they are weighted.
 
     By the square of the density, since dots settle at its root. The last steps are weighted by
@@ -271,30 +275,30 @@ def step_weights(sheet: Sheet, plan: Plan, n_done: int = 0) -> Iterator[tuple[in
     """
     from stippler.stippling.density import DensityField
 
-    x, y = sheet.outline_mm()[0]
-    solved = plan.weighted and plan.sizes == "tone" and sheet.rule.varies
+    x, y = raster.outline_mm()[0]
+    solved = plan.weighted and plan.sizes == "tone" and raster.rule.varies
     n_last = min(_LAST_STEPS, plan.iterations // 3) if solved else 0
     n_first = plan.iterations - n_last - n_done
     if n_first > 0:
-        density = sheet.density()
+        density = raster.density()
         weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
-        yield n_first, DensityField(weight, sheet.pixel_mm, (float(x), float(y)))
+        yield n_first, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
     n_last = min(n_last, plan.iterations - n_done)
     if n_last > 0:
-        weight = sheet.with_bleed(sheet.darkness)
-        yield n_last, DensityField(weight, sheet.pixel_mm, (float(x), float(y)))
+        weight = raster.with_bleed(raster.darkness)
+        yield n_last, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
 
 
 def _finish(
-    sheet: Sheet, points: NDArray[np.float64]
+    raster: PageRaster, points: NDArray[np.float64]
 ) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Part dots that lie too close, and even out the ink along the edge of a page that bleeds."""
-    points = part_close(points, sheet)
+    points = part_close(points, raster)
     yield 0.2, points
-    if not sheet.bleed:
+    if not raster.bleed:
         return
     for k, give in enumerate(_GIVES):
-        points = even_rim(points, sheet, give)
+        points = even_rim(points, raster, give)
         yield 0.2 + 0.8 * (k + 0.5) / len(_GIVES), points
-        points = part_close(points, sheet, at_edge(points, sheet))
+        points = part_close(points, raster, at_edge(points, raster))
         yield 0.2 + 0.8 * (k + 1) / len(_GIVES), points

@@ -31,7 +31,7 @@ def ink_for(darkness: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class DotRule:
     """The joint rule for radius and density.
 
     Attributes
@@ -116,7 +116,7 @@ def rule_for(
     ratio: float = 2.0,
     *,
     faintest: float | None = None,
-) -> Rule:
+) -> DotRule:
     """Choose radii and density for a picture; lengths in pixels.
 
     Parameters
@@ -135,17 +135,17 @@ def rule_for(
     if faintest is not None:
         levels = levels[0] * (levels[1] >= faintest), levels[1]
     if size_range is not None:
-        rule = Rule(*size_range, even=even)
+        rule = DotRule(*size_range, even=even)
         return rule if n_dots is None else _scaled(rule, levels, rim, n_dots)
     if n_dots is None:
         raise ParameterError("neither a number nor a size is given", "dots")
-    unit = Rule(1.0, ratio, even=even)
+    unit = DotRule(1.0, ratio, even=even)
     area = float(levels[0] @ unit.density(levels[1]))
     length = float(rim[0] @ unit.per_border(rim[1]))
     if not area > 0:
         return unit
     low = (length + math.sqrt(length**2 + 4.0 * n_dots * area)) / (2.0 * n_dots)
-    return Rule(low, low * ratio, even=even)
+    return DotRule(low, low * ratio, even=even)
 
 
 _Levels = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -159,7 +159,7 @@ def _histogram(darkness: NDArray[np.float32]) -> _Levels:
     return counts, np.divide(sums, counts, out=np.zeros_like(sums), where=counts > 0)
 
 
-def _scaled(rule: Rule, levels: _Levels, rim: _Levels, n_dots: int) -> Rule:
+def _scaled(rule: DotRule, levels: _Levels, rim: _Levels, n_dots: int) -> DotRule:
     """Scale the radii within their range until the rule gives `n_dots`; then thin, never crowd."""
 
     def number(scale: float) -> float:
@@ -180,7 +180,7 @@ def _scaled(rule: Rule, levels: _Levels, rim: _Levels, n_dots: int) -> Rule:
 
 
 def shortfall(
-    darkness: NDArray[np.float32], rule: Rule, pixel_mm: float, n: int, wanted: int | None
+    darkness: NDArray[np.float32], rule: DotRule, pixel_mm: float, n: int, wanted: int | None
 ) -> Shortfall:
     """Say where the largest dots, as dense as the rule sets them, are not dark enough."""
     notes: tuple[str, ...] = ()

@@ -7,16 +7,16 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from stippler.brushes.kinds import KINDS
+from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Commands, Key
+from stippler.editor.session import Session
 from stippler.stippling.plan import Plan
-from stippler.ui.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Commands, Key
-from stippler.ui.layout import BRUSH
+from stippler.ui.panels.layout import BRUSH
 from stippler.ui.preferences import SCALES, TONES
-from stippler.ui.session import Session
-from stippler.ui.window import Window
+from stippler.ui.window.window import Window
 from stippler.units import DEFAULT_WIDTH_MM
 
 if TYPE_CHECKING:
-    from stippler.ui.editor import Editor
+    from stippler.ui.editor_window import Editor
 
 _TEXT_STEP = 1.1
 _RESIZE_PERCENT = 10.0
@@ -60,10 +60,10 @@ def _edit(editor: Editor, session: Session) -> Iterator[Command]:
     painting, popups = editor.painting, editor.popups
 
     def can_undo() -> bool:
-        return session.editing is not None and session.editing.history.undone is not None
+        return session.document is not None and session.document.history.undone is not None
 
     def can_redo() -> bool:
-        return session.editing is not None and session.editing.history.redone is not None
+        return session.document is not None and session.document.history.redone is not None
 
     yield Command("edit.undo", "Undo", painting.undo, (Key("z", CTRL),), can=can_undo)
     yield Command("edit.redo", "Redo", painting.redo, (Key("z", CTRL_SHIFT), Key("y", CTRL)),

@@ -12,11 +12,11 @@ from stippler.drawing.drawing import MAX_PAGE_MM
 from stippler.settings import put_aside, read_document, write_document, write_text
 from stippler.stippling.plan import Plan
 from stippler.ui.look import Look
-from stippler.ui.place import Place
 from stippler.ui.theme import DARK, LIGHT
+from stippler.ui.window.placement import Place
 
 if TYPE_CHECKING:
-    from stippler.ui.session import Session
+    from stippler.editor.session import Session
 
 FILE, LAYOUT_FILE = "preferences.json", "layout.ini"
 SCALES = (0.75, 3.0)

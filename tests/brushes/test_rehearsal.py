@@ -17,7 +17,7 @@ from numba.core.dispatcher import Dispatcher
 from stippler.app import App
 from stippler.brushes.kinds import KINDS
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
+from stippler.ui.window.scripted_host import Host
 
 loaded, at_work = [], []
 compile_one = Dispatcher.compile

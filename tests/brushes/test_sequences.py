@@ -11,13 +11,13 @@ from shapely.geometry import Polygon
 from stippler.brushes import selection
 from stippler.brushes.brush import Brush
 from stippler.brushes.kinds import KINDS
-from stippler.brushes.stroke import PointerSample
-from stippler.brushes.stroking import Stroke
+from stippler.brushes.stroke import Stroke
+from stippler.brushes.stroke_path import PointerSample
 from stippler.brushes.tip import Tip
 from stippler.drawing.area import Area
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 
@@ -64,49 +64,49 @@ class PaintingMachine(RuleBasedStateMachine):
     def __init__(self):
         super().__init__()
         drawing = some_drawing()
-        self.editing = Editing(drawing, budget_bytes=4000)
-        at = self.editing.bounds.area_at(drawing.dots.position_mm)
-        self.editing.begin("areas")
-        self.editing.change("area", np.arange(len(at)), at.astype(np.int32))
-        self.editing.commit()
-        self.editing.history.close()
-        self.start = self.editing.dots.copy()
+        self.document = Document(drawing, budget_bytes=4000)
+        at = self.document.bounds.area_at(drawing.dots.position_mm)
+        self.document.begin("areas")
+        self.document.change("area", np.arange(len(at)), at.astype(np.int32))
+        self.document.commit()
+        self.document.history.close()
+        self.start = self.document.dots.copy()
         self.n_strokes = 0
         self.run_size = 0
         self.by_hand = set()  # ids a person has changed since the run began
 
     def teardown(self):
-        editing = self.editing
-        editing.end_run()
-        end, n_done = editing.dots.copy(), editing.history.n_done
-        while editing.undo():
+        document = self.document
+        document.end_run()
+        end, n_done = document.dots.copy(), document.history.n_done
+        while document.undo():
             pass
-        assert same(editing.dots, self.start)
-        while editing.history.n_done < n_done:
-            editing.redo()
-        assert same(editing.dots, end)
-        editing.history.close()
+        assert same(document.dots, self.start)
+        while document.history.n_done < n_done:
+            document.redo()
+        assert same(document.dots, end)
+        document.history.close()
 
     def places_of_fixed(self):
-        dots = self.editing.dots
+        dots = self.document.dots
         return dict(
             zip(dots.id[dots.fixed].tolist(), dots.position_mm[dots.fixed].tolist(), strict=True)
         )
 
     def places(self, ids):
-        rows = self.editing.rows(np.array(sorted(ids), np.int64))
-        return self.editing.dots.position_mm[rows[rows >= 0]].copy()
+        rows = self.document.rows(np.array(sorted(ids), np.int64))
+        return self.document.dots.position_mm[rows[rows >= 0]].copy()
 
     def check_fixed(self, before):
         """Fixed dots are where they were, or gone."""
-        dots = self.editing.dots
+        dots = self.document.dots
         now = dict(zip(dots.id.tolist(), dots.position_mm.tolist(), strict=True))
         assert all(now.get(k, place) == place for k, place in before.items())
 
     def note_hand(self, before):
         """Remember the ids of the dots that a stroke has changed or added."""
-        after = self.editing.dots
-        rows = self.editing.rows(before.id)
+        after = self.document.dots
+        rows = self.document.rows(before.id)
         there = rows >= 0
         differs = np.zeros(len(there), np.bool_)
         for name in NAMES:
@@ -125,10 +125,10 @@ class PaintingMachine(RuleBasedStateMachine):
     )
     def stroke(self, which, tip, path, radius, ends, late):
         kind, values = which
-        before, fixed = self.editing.dots.copy(), self.places_of_fixed()
+        before, fixed = self.document.dots.copy(), self.places_of_fixed()
         self.n_strokes += 1
         brush = Brush(kind, kind, radius, tip, values=values)
-        stroke = Stroke(self.editing, brush, PointerSample(*path[0]), self.n_strokes)
+        stroke = Stroke(self.document, brush, PointerSample(*path[0]), self.n_strokes)
         for k, at in enumerate(path[1:]):
             stroke.follow(PointerSample(*at, t=0.1 * (k + 1)))
         late = late and self.run_size > 0
@@ -141,90 +141,90 @@ class PaintingMachine(RuleBasedStateMachine):
         if kind not in ("fix", "unfix"):
             self.check_fixed(fixed)
         if ends == "cancel" and not late:
-            assert same(self.editing.dots, before)
+            assert same(self.document.dots, before)
         elif not late:  # else what the hand did cannot be told from what the worker did
             self.note_hand(before)
 
     @rule(corners=st.tuples(AT, AT), what=st.integers(0, 5))
     def work_on_a_selection(self, corners, what):
-        editing, before, fixed = self.editing, self.editing.dots.copy(), self.places_of_fixed()
+        document, before, fixed = self.document, self.document.dots.copy(), self.places_of_fixed()
         (ax, ay), (bx, by) = corners
-        ids = selection.in_outline(editing, [(ax, ay), (bx, ay), (bx, by), (ax, by)])
-        editing.begin("selection")
+        ids = selection.in_outline(document, [(ax, ay), (bx, ay), (bx, by), (ax, by)])
+        document.begin("selection")
         if what == 0:
-            selection.move(editing, ids, (1.5, -0.5))
+            selection.move(document, ids, (1.5, -0.5))
         elif what == 1:
-            selection.delete(editing, ids[::2])
+            selection.delete(document, ids[::2])
         elif what == 2:
-            selection.duplicate(editing, ids[:5])
+            selection.duplicate(document, ids[:5])
         elif what == 3:
-            selection.relax(editing, ids)
+            selection.relax(document, ids)
         elif what == 4:
-            selection.shake(editing, ids, np.random.default_rng(self.n_strokes))
+            selection.shake(document, ids, np.random.default_rng(self.n_strokes))
         else:
-            selection.resize(editing, ids, 20.0)
-        editing.commit()
+            selection.resize(document, ids, 20.0)
+        document.commit()
         self.check_fixed(fixed)
         self.note_hand(before)
 
-    @precondition(lambda self: len(self.editing.dots))
+    @precondition(lambda self: len(self.document.dots))
     @rule()
     def begin_a_run(self):
-        self.run_size = len(self.editing.begin_run("relax"))
+        self.run_size = len(self.document.begin_run("relax"))
         self.by_hand = set()
 
     def merge(self, seed):
         """Let a worker's result come in: places in the dots' own areas, as a worker's are."""
-        run, rng = self.editing._run, np.random.default_rng(seed)
+        run, rng = self.document._run, np.random.default_rng(seed)
         if run is None:
             return
         aim = run.after + rng.normal(0, 1.0, run.after.shape)
-        rows = self.editing.rows(run.ids)
-        area = np.where(rows >= 0, self.editing.dots.area[rows], 0).astype(np.int32)
-        self.editing.merge(self.editing.bounds.confine(run.after, aim, area))
-        self.editing.merge_radii(rng.uniform(0.1, 0.4, len(run.ids)).astype(np.float32))
+        rows = self.document.rows(run.ids)
+        area = np.where(rows >= 0, self.document.dots.area[rows], 0).astype(np.int32)
+        self.document.merge(self.document.bounds.confine(run.after, aim, area))
+        self.document.merge_radii(rng.uniform(0.1, 0.4, len(run.ids)).astype(np.float32))
 
     @precondition(lambda self: self.run_size)
     @rule(seed=st.integers(0, 99))
     def a_late_result(self, seed):
         """One that comes after the run was ended or undone, too."""
         fixed, mine = self.places_of_fixed(), self.places(self.by_hand)
-        if self.editing.in_run:
+        if self.document.in_run:
             self.merge(seed)
         else:
-            before = self.editing.dots.copy()
-            assert self.editing.merge(np.zeros((self.run_size, 2))) == 0
-            assert same(self.editing.dots, before)
+            before = self.document.dots.copy()
+            assert self.document.merge(np.zeros((self.run_size, 2))) == 0
+            assert same(self.document.dots, before)
         self.check_fixed(fixed)
         assert np.array_equal(self.places(self.by_hand), mine)
 
     @rule()
     def end_the_run(self):
-        self.editing.end_run()
+        self.document.end_run()
 
     @rule()
     def undo(self):
-        before = self.editing.dots.copy()
-        self.editing.undo()
+        before = self.document.dots.copy()
+        self.document.undo()
         self.note_hand(before)
 
     @rule()
     def redo(self):
-        before = self.editing.dots.copy()
-        self.editing.redo()
+        before = self.document.dots.copy()
+        self.document.redo()
         self.note_hand(before)
 
     @invariant()
     def whole(self):
-        editing, dots = self.editing, self.editing.dots
+        document, dots = self.document, self.document.dots
         assert len(np.unique(dots.id)) == len(dots)
-        assert np.array_equal(editing.rows(dots.id), np.arange(len(dots)))
-        assert np.array_equal(editing.bounds.area_at(dots.position_mm), dots.area)
+        assert np.array_equal(document.rows(dots.id), np.arange(len(dots)))
+        assert np.array_equal(document.bounds.area_at(dots.position_mm), dots.area)
         assert (dots.radius_mm > 0).all()
         view = (3.0, 2.0, 13.0, 8.5)
         x, y = dots.position_mm.T
         inside = (x >= view[0]) & (x <= view[2]) & (y >= view[1]) & (y <= view[3])
-        assert np.array_equal(editing.in_box(view), np.flatnonzero(inside))
+        assert np.array_equal(document.in_box(view), np.flatnonzero(inside))
 
 
 TestPainting = PaintingMachine.TestCase

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stippler.brushes.stroke import (
+from stippler.brushes.stroke_path import (
     PointerSample,
     Rope,
     Spacer,

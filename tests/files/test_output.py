@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stippler.errors import OutputError
-from stippler.files.output import check_writable, replacing
+from stippler.files.atomic_write import check_writable, replacing
 
 
 def names(folder):

@@ -16,7 +16,8 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import ParameterError
 from stippler.files import svg
-from stippler.kernels import dot_shape, pool, svg_text
+from stippler.kernels.machine import pool
+from stippler.kernels.shapes import dot_shape, svg_text
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")

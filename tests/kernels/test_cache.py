@@ -2,16 +2,17 @@
 
 import pytest
 
-from stippler.kernels import cache
+from stippler.kernels.machine import cache
 
 
 @pytest.fixture
 def house(tmp_path, monkeypatch):
-    (tmp_path / "low.py").write_text("A = 1\n")
-    (tmp_path / "middle.py").write_text("from stippler.kernels.low import A\n")
+    (tmp_path / "room").mkdir()
+    (tmp_path / "room" / "low.py").write_text("A = 1\n")
+    (tmp_path / "middle.py").write_text("from stippler.kernels.room.low import A\n")
     (tmp_path / "top.py").write_text("from stippler.kernels.middle import A\n")
     (tmp_path / "other.py").write_text("B = 1\n")
-    monkeypatch.setattr(cache, "_HERE", tmp_path)
+    monkeypatch.setattr(cache, "_KERNELS", tmp_path)
     monkeypatch.setenv("STIPPLER_CACHE_DIR", str(tmp_path / "cache"))
     cache._text.cache_clear()
     yield tmp_path
@@ -26,7 +27,7 @@ def folders(house):
 def test_a_change_below_moves_the_folder_of_what_imports_it(house):
     before = folders(house)
     assert before == folders(house)
-    (house / "low.py").write_text("A = 2\n")
+    (house / "room" / "low.py").write_text("A = 2\n")
     after = folders(house)
     assert after["top"] != before["top"]
     assert after["other"] == before["other"]
@@ -47,8 +48,8 @@ def test_the_folder_can_be_moved(house):
 def test_two_installations_do_not_share_a_mark(house, tmp_path_factory, monkeypatch):
     before = cache.all_digest()
     twin = tmp_path_factory.mktemp("twin")
-    for source in house.glob("*.py"):
+    for source in house.rglob("*.py"):
         (twin / source.name).write_text(source.read_text())
-    monkeypatch.setattr(cache, "_HERE", twin)
+    monkeypatch.setattr(cache, "_KERNELS", twin)
     cache._text.cache_clear()
     assert cache.all_digest() != before

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from shapely.geometry import MultiPoint, Point, Polygon, box
 
 from stippler.analysis.tone_error import draw_ink
-from stippler.kernels.ink import onto_ink, sample
-from stippler.kernels.radii import fit_radii
-from stippler.kernels.tone import MAX_CORNERS
+from stippler.kernels.tone.cell_ink import MAX_CORNERS
+from stippler.kernels.tone.pixel_owner import onto_ink, sample
+from stippler.kernels.tone.radii import fit_radii
 from stippler.stippling.radii import _Cells, sorted_by_place
 
 

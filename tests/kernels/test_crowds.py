@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stippler.kernels.crowds import CROWD, LEAF, bound_crowds, split_crowds
+from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
 
 
 @pytest.mark.parametrize("n", [CROWD + 1, 64, 65, 1000])

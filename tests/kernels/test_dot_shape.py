@@ -11,7 +11,7 @@ from shapely.geometry import LinearRing, Polygon
 
 from stippler.drawing.dots import MAX_ELONGATION, Dots
 from stippler.errors import ParameterError
-from stippler.kernels import dot_shape
+from stippler.kernels.shapes import dot_shape
 
 shapes = st.fixed_dictionaries(
     {

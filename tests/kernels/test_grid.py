@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon, box
 
-from stippler.kernels import pool
-from stippler.kernels.grid import sort_by_grid_cell
+from stippler.kernels.cells.grid import sort_by_grid_cell
+from stippler.kernels.machine import pool
 from stippler.stippling.compartments import Compartments
 from stippler.stippling.dotgrid import DotGrid
 
@@ -69,10 +69,10 @@ def test_borders_run_with_the_inside_on_their_left():
 
 def test_a_cancelled_range_run_says_so():
     done = []
-    assert pool.run_ranges(lambda a, b: done.append((a, b)), 1000, grain=10, cancel=lambda: False)
+    assert pool.parallel_for(lambda a, b: done.append((a, b)), 1000, grain=10, cancel=lambda: False)
     assert sorted(done) == [(k, k + 10) for k in range(0, 1000, 10)]
     done.clear()
-    assert not pool.run_ranges(
+    assert not pool.parallel_for(
         lambda a, b: done.append(a), 1000, grain=10, cancel=lambda: len(done) >= 7
     )
     assert 7 <= len(done) <= 7 + pool.n_threads()

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import KDTree
 
-from stippler.kernels.parting import find_close
-from stippler.kernels.radii import compare_sizes, even_sizes
+from stippler.kernels.cells.close_pairs import find_close
+from stippler.kernels.tone.radii import compare_sizes, even_sizes
 from stippler.stippling.radii import _Cells, sorted_by_place
 
 

@@ -5,7 +5,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stippler.kernels.polygon import find_depths
+from stippler.kernels.cells.polygon import find_depths
 
 
 @given(n=st.integers(3, 30), seed=st.integers(0, 999))

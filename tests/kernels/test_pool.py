@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from stippler.kernels.pool import run_ranges, set_threads, stand_back
+from stippler.kernels.machine.pool import parallel_for, set_threads, stand_back
 
 
 @pytest.fixture(autouse=True)
@@ -27,10 +27,10 @@ def test_a_second_caller_runs_alone_while_all_cores_are_taken():
     def noted(start: int, stop: int) -> None:
         seen.add(threading.get_ident())
 
-    first = threading.Thread(target=lambda: run_ranges(held, 100, grain=1))
+    first = threading.Thread(target=lambda: parallel_for(held, 100, grain=1))
     first.start()
     assert begun.wait(10)
-    assert run_ranges(noted, 100, grain=1)
+    assert parallel_for(noted, 100, grain=1)
     assert seen == {threading.get_ident()}
     may_end.set()
     first.join()
@@ -43,15 +43,15 @@ def test_every_range_runs_once_and_an_error_comes_out():
         for k in range(start, stop):
             done[k] += 1
 
-    assert run_ranges(count, 1000, grain=10)
+    assert parallel_for(count, 1000, grain=10)
     assert done == [1] * 1000
 
     def broken(start: int, stop: int) -> None:
         raise RuntimeError("on purpose")
 
     with pytest.raises(RuntimeError, match="on purpose"):
-        run_ranges(broken, 1000, grain=10)
-    assert run_ranges(count, 1000, grain=10)  # and the pool lives on
+        parallel_for(broken, 1000, grain=10)
+    assert parallel_for(count, 1000, grain=10)  # and the pool lives on
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="threads have no rank of their own")

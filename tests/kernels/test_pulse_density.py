@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon
 
-from stippler.kernels.pulse_density import USED, diffuse, fill_cells, grow
-from stippler.kernels.seeds import (
+from stippler.kernels.halftone.grow_regions import USED, diffuse, fill_cells, grow
+from stippler.kernels.halftone.scan_order import (
     FRONT_STEP,
     along_front,
     chamfer,

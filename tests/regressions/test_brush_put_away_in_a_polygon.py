@@ -5,24 +5,24 @@ And the press on the button that did it had become one more corner, under the pa
 
 import numpy as np
 
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
-from stippler.ui.events import LEFT, KeyDown, Pressed
-from stippler.ui.tools.toolbox import Toolbox
+from stippler.editor.events import LEFT, KeyDown, Pressed
+from stippler.editor.tools.toolbox import Toolbox
 
 
 def test_nothing_is_held_any_more(tmp_path):
     drawing = Drawing.blank(Page(100.0, 100.0))
     drawing.dots = Dots.round(np.array([[10.0, 10.0]]), 0.5)
-    editing = Editing(drawing)
+    document = Document(drawing)
     box = Toolbox(tmp_path / "brushes.json", lambda text, grade: None)
     box.choose_kind("select")
     box.set_brush(box.brush.with_value("how", "polygon"))
     for x in (10.0, 50.0):
-        box.take(Pressed(LEFT, x, 10.0, x), editing, lambda x, y: (x, y), 1.0)
+        box.take(Pressed(LEFT, x, 10.0, x), document, lambda x, y: (x, y), 1.0)
     assert len(box.outline) == 3
     box.choose(-1)
     assert not box.is_busy
     escape = KeyDown("escape")
-    assert not box.take(escape, editing, lambda x, y: (x, y), 1.0)
+    assert not box.take(escape, document, lambda x, y: (x, y), 1.0)

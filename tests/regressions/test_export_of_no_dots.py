@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from stippler.drawing.drawing import Page
+from stippler.editor.session import Session
+from stippler.jobs.work import PREPARE, Work
 from stippler.jobs.worker import Update
 from stippler.stippling.plan import Plan
-from stippler.ui.dialogs import Dialogs
-from stippler.ui.filing import Filing
+from stippler.ui.popups.file_dialogs import Dialogs
+from stippler.ui.popups.filing import Filing
 from stippler.ui.preferences import Preferences
-from stippler.ui.session import Session
-from stippler.ui.work import PREPARE, Work
 
 
 class Worker:
@@ -39,7 +39,7 @@ def test_nothing_is_written(ask):
     )
     session.new(Page(50.0, 50.0))
     session.poll()
-    assert session.editing is not None
+    assert session.document is not None
     filing = Filing(session, Dialogs(use_native=False), Preferences(), lambda: None)
     getattr(filing, ask)()
     session.export(Path("drawing.svg"), 600.0)

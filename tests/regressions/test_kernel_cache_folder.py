@@ -3,8 +3,8 @@
 import threading
 from pathlib import Path
 
-from stippler.kernels import jit
-from stippler.kernels.cache import module_folder
+from stippler.kernels.machine import jit
+from stippler.kernels.machine.cache import module_folder
 
 
 def test_the_folder_is_not_taken_from_another_thread(monkeypatch, tmp_path):

@@ -1,7 +1,7 @@
 """The palette's Enter counted as the lens's key: held for a moment, the lens went with it."""
 
-from stippler.ui.events import NO_MODS, KeyDown, KeyUp
-from stippler.ui.lens import LensKey
+from stippler.editor.events import NO_MODS, KeyDown, KeyUp
+from stippler.ui.canvas.lens import LensKey
 from stippler.ui.look import Look
 
 

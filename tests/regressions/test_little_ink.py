@@ -7,8 +7,8 @@ import stippler
 from stippler.drawing.reference import Reference
 from stippler.errors import ParameterError
 from stippler.stippling.halftone import supersampling
+from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import Plan
-from stippler.stippling.sheet import Sheet
 from stippler.stippling.stipple import stages
 
 
@@ -30,7 +30,7 @@ def test_few_dots_are_all_drawn(n_dots):
 def test_a_halftone_of_one_black_pixel_has_bounds():
     """20,000 dots in one of 200 x 200 pixels were 11 gigabytes of cells."""
     darkness = (1.0 - one_black_pixel(200)).astype(np.float32)
-    density = Sheet.of(Reference(darkness, 150.0), 20_000, None, bleeds=False).density()
+    density = PageRaster.of(Reference(darkness, 150.0), 20_000, None, bleeds=False).density()
     assert density.size * supersampling(density) ** 2 <= 4.5e8
 
 

@@ -9,10 +9,10 @@ import pytest
 
 from stippler.brushes.brush import Brush, first_brushes
 from stippler.brushes.presets import load_brushes
+from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
 from stippler.settings import read_document
 from stippler.ui.preferences import FILE, Preferences
-from stippler.ui.tools.toolbox import Toolbox
 
 HUGE = 10**400
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from stippler.app import App
+from stippler.editor.messages import ERROR
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
-from stippler.ui.layout import SHAPE
-from stippler.ui.messages import ERROR
-from stippler.ui.place import SMALLEST, Place
+from stippler.ui.panels.layout import SHAPE
+from stippler.ui.window.placement import SMALLEST, Place
+from stippler.ui.window.scripted_host import Host
 
 
 def test_a_small_window_is_larger_the_next_time() -> None:

@@ -6,8 +6,8 @@ import pytest
 
 from stippler.app import App
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
 from stippler.ui.panels import status
+from stippler.ui.window.scripted_host import Host
 
 
 def test_fields_without_room_are_left_out() -> None:

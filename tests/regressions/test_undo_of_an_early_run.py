@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
 from stippler.drawing.reference import Reference
+from stippler.editor.session import Session
 from stippler.errors import PictureError
+from stippler.jobs.work import Work
 from stippler.jobs.worker import Update
 from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress
-from stippler.ui.session import Session
-from stippler.ui.work import Work
 
 POINTS = np.array([[10.0, 10.0], [20.0, 20.0], [30.0, 30.0]])
 
@@ -65,9 +65,9 @@ def session(worker):
         1, Work("done", 1, 1, progress=progress, reference=reference), "finished", None, 1
     )
     made.poll()
-    made.editing.begin("Erase")
-    made.editing.remove(np.array([0]))
-    made.editing.commit()
+    made.document.begin("Erase")
+    made.document.remove(np.array([0]))
+    made.document.commit()
     return made
 
 
@@ -83,14 +83,14 @@ def test_a_session_takes_back_only_the_run(session):
 def test_a_drawing_takes_back_only_the_run():
     drawing = Drawing.blank(Page(40.0, 40.0))
     drawing.dots = Dots.round(POINTS, 0.5)
-    editing = Editing(drawing)
-    editing.begin("Erase")
-    editing.remove(np.array([0]))
-    editing.commit()
-    editing.begin_run("Relax all")
-    assert editing.undo()
-    assert not editing.in_run
-    assert len(editing.dots) == 2
+    document = Document(drawing)
+    document.begin("Erase")
+    document.remove(np.array([0]))
+    document.commit()
+    document.begin_run("Relax all")
+    assert document.undo()
+    assert not document.in_run
+    assert len(document.dots) == 2
 
 
 def test_a_relaxation_goes_by_the_picture_that_is_open(session, worker):

@@ -10,8 +10,8 @@ from shapely.geometry import Point, Polygon
 
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
-from stippler.kernels.dot_shape import outlines
-from stippler.kernels.overlap import shares_of_union
+from stippler.kernels.shapes.dot_shape import outlines
+from stippler.kernels.tone.union_share import shares_of_union
 
 SIDE = 40.0
 
@@ -132,7 +132,7 @@ def test_dots_on_one_another_count_once():
 
 
 def test_shares_do_not_depend_on_the_number_of_threads():
-    from stippler.kernels import pool
+    from stippler.kernels.machine import pool
 
     rng = np.random.default_rng(3)
     discs = rng.random((20_000, 3)).astype(np.float32) * (50, 50, 0.4)

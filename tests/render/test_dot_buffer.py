@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
 from stippler.render.dot_buffer import DotBuffer
 
 ORIGIN = (10.0, 10.0)
@@ -27,30 +27,30 @@ def test_dots_that_come_go_and_move_between_uploads(ctx, seed: int) -> None:
     rng = np.random.default_rng(seed)
     drawing = Drawing.blank(Page(20, 20))
     drawing.dots = some_dots(rng, 400)
-    editing = Editing(drawing)
+    document = Document(drawing)
     buffer, fresh = DotBuffer(ctx), DotBuffer(ctx)
     none = np.zeros(2000, np.bool_)
-    editing.take_changed()
-    buffer.set(editing.dots, none[:400], ORIGIN)
+    document.take_changed()
+    buffer.set(document.dots, none[:400], ORIGIN)
     for _ in range(30):
-        editing.begin("stroke")
+        document.begin("stroke")
         for _ in range(rng.integers(1, 4)):
-            act, n = rng.integers(3), len(editing.dots)
+            act, n = rng.integers(3), len(document.dots)
             rows = rng.integers(0, n, 12)
             if act == 0:
-                editing.remove(rows)
+                document.remove(rows)
             elif act == 1:
-                editing.insert(some_dots(rng, 9))
+                document.insert(some_dots(rng, 9))
             else:
                 rows = np.unique(rows)
-                editing.move(rows, rng.uniform(0, 20, (len(rows), 2)))
-        editing.commit()
+                document.move(rows, rng.uniform(0, 20, (len(rows), 2)))
+        document.commit()
         if rng.random() < 0.3:
-            editing.undo()
-        n, rows = len(editing.dots), editing.take_changed().rows
+            document.undo()
+        n, rows = len(document.dots), document.take_changed().rows
         assert rows is not None
-        buffer.update(editing.dots, rows, none[:n], ORIGIN)
-        fresh.set(editing.dots, none[:n], ORIGIN)
+        buffer.update(document.dots, rows, none[:n], ORIGIN)
+        fresh.set(document.dots, none[:n], ORIGIN)
         assert buffer.n == n
         assert np.array_equal(by_row(buffer), by_row(fresh))
     buffer.release()

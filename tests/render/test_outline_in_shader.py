@@ -14,8 +14,8 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.pens import PENS
 from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
-from stippler.drawing.shape_change import Edges, ShapeChange, Step, to
-from stippler.kernels.dot_shape import outlines
+from stippler.drawing.shape_change import Edges, LinearChange, ShapeChange, to
+from stippler.kernels.shapes.dot_shape import outlines
 
 RADIUS_PX = 100.0
 SIZE = (640, 640)
@@ -76,14 +76,14 @@ def hill() -> Reference:
 
 ANY = math.pi / 2
 CHANGES = {
-    "enlarge": ShapeChange(radius=Step(1.4)),
+    "enlarge": ShapeChange(radius=LinearChange(1.4)),
     "set size": ShapeChange(radius=to(0.5)),
-    "reduce": ShapeChange(radius=Step(0.5, -0.01)),
-    "deform": ShapeChange(elongation=Step(addend=1.2), roughness=Step(addend=0.5)),
+    "reduce": ShapeChange(radius=LinearChange(0.5, -0.01)),
+    "deform": ShapeChange(elongation=LinearChange(addend=1.2), roughness=LinearChange(addend=0.5)),
     "round": ShapeChange(elongation=to(1.0), roughness=to(0.0)),
     "direct": ShapeChange(elongation=to(3.0), angle_rad=0.7),
     "upright": ShapeChange(elongation=to(2.0), angle_rad=math.pi / 2),
-    "scatter": ShapeChange(elongation=Step(1.3), scatter_rad=ANY),
+    "scatter": ShapeChange(elongation=LinearChange(1.3), scatter_rad=ANY),
     "along edges": ShapeChange(elongation=to(3.0), edges=Edges(hill(), 1.0)),
     "stretch": ShapeChange(stretch=0.8, angle_rad=math.pi / 2),
     "stretch at random": ShapeChange(stretch=0.8, angle_rad=0.0, scatter_rad=ANY),
@@ -147,7 +147,7 @@ def test_a_preview_uploads_nothing(renderer, ink, many, monkeypatch):
     ink(Camera((20, 15), 8.0), (320, 240))
     revision = renderer._dots.buffer.revision
     before = renderer._dots.buffer.gl.read()
-    renderer.set_preview(Preview(ShapeChange(radius=Step(2.0))))
+    renderer.set_preview(Preview(ShapeChange(radius=LinearChange(2.0))))
     ink(Camera((20, 15), 8.0), (320, 240))
     assert renderer._dots.buffer.revision == revision
     assert renderer._dots.buffer.gl.read() == before
@@ -191,7 +191,7 @@ def test_pens_and_changes_refuse_nonsense():
         with pytest.raises(ParameterError):
             Pen("x", **wrong)
     with pytest.raises(ParameterError):
-        ShapeChange(radius=Step(math.inf))
+        ShapeChange(radius=LinearChange(math.inf))
 
 
 def test_a_change_turns_the_shorter_way():

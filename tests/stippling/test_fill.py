@@ -7,8 +7,8 @@ import pytest
 from shapely.geometry import box
 
 from stippler.drawing.area import Area
+from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
 from stippler.errors import ParameterError
 from stippler.stippling.fill import Filling, fill_drawing
 
@@ -17,18 +17,18 @@ from stippler.stippling.fill import Filling, fill_drawing
 def test_an_area_is_filled_in_one_step(arrangement) -> None:
     drawing = Drawing.blank(Page(60.0, 40.0))
     drawing.areas.append(Area("corner", box(0, 0, 20, 10)))
-    editing = Editing(drawing)
+    document = Document(drawing)
     filling = Filling(200, arrangement, 0.25, seed=3)
-    first = fill_drawing(drawing, editing, filling)
-    second = fill_drawing(drawing, editing, filling, area=1)
-    dots = editing.dots
+    first = fill_drawing(drawing, document, filling)
+    second = fill_drawing(drawing, document, filling, area=1)
+    dots = document.dots
     assert len(dots) == first + second
     assert abs(first - 200) <= 8
     assert (dots.position_mm[dots.area == 1] <= [20, 10]).all()
     assert (dots.radius_mm == np.float32(0.25)).all()
     assert len(set(dots.id)) == len(dots)
-    editing.undo()
-    assert len(editing.dots) == first
+    document.undo()
+    assert len(document.dots) == first
 
 
 @pytest.mark.parametrize(

@@ -22,14 +22,14 @@ from stippler.stippling.halftone import (
     sizes_by_region,
     supersampling,
 )
-from stippler.stippling.starts import (
+from stippler.stippling.initial_points import (
     floyd_steinberg,
     hexagonal,
     hexagonal_in,
     random_dots,
     random_in,
 )
-from stippler.stippling.tone import Rule
+from stippler.stippling.tone import DotRule
 
 
 def all_dots(density, *args, **kwargs):
@@ -118,7 +118,7 @@ def test_border_start_lines_the_outermost_dots_up():
 
 
 def test_sizes_follow_regions_at_the_thresholds():
-    rule = Rule(2.0 / math.sqrt(2), 2.0 * math.sqrt(2), even=True)
+    rule = DotRule(2.0 / math.sqrt(2), 2.0 * math.sqrt(2), even=True)
     small, large, omit = 1 / rule.density(np.array([ENLARGED, REDUCED, DROPPED]))
     region = np.array(
         [small / 9, 0.9 * small, 1.1 * small, large, 2 * large, 0.99 * omit, 1.01 * omit]

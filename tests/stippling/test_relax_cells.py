@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import MultiPoint, Point, Polygon, box
 
-from stippler.kernels import pool
+from stippler.kernels.machine import pool
 from stippler.stippling.relax import DensityField, Relaxation
 
 TOLERANCE = 1e-9  # of the mean spacing

@@ -11,7 +11,7 @@ from shapely.geometry import Polygon
 from stippler.analysis.tone_error import draw_ink, measure_tone
 from stippler.drawing.reference import Reference
 from stippler.errors import GeometryError, ParameterError
-from stippler.kernels.pool import n_threads, set_threads
+from stippler.kernels.machine.pool import n_threads, set_threads
 from stippler.stippling.plan import FIRST_DOTS, Plan
 from stippler.stippling.stipple import notes_on, pulse_density, stages
 

@@ -8,10 +8,10 @@ from scipy.ndimage import gaussian_filter
 
 from stippler.analysis.tone_error import draw_ink
 from stippler.drawing.reference import Reference
-from stippler.kernels.pool import n_threads, set_threads
+from stippler.kernels.machine.pool import n_threads, set_threads
+from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.radii import solve_radii
-from stippler.stippling.sheet import Sheet
-from stippler.stippling.tone import Rule, ink_for, rule_for, shortfall
+from stippler.stippling.tone import DotRule, ink_for, rule_for, shortfall
 
 NO_RIM = np.empty(0, np.float32)
 
@@ -23,7 +23,7 @@ def frozen(field):
 
 
 def solved(points, darkness, low, high):
-    *_, (share, radii) = solve_radii(points, darkness, Rule(low, high))
+    *_, (share, radii) = solve_radii(points, darkness, DotRule(low, high))
     assert share == 1.0
     return radii
 
@@ -40,7 +40,7 @@ def hexagons(w, h, spacing):
 
 @given(st.floats(0, 1), st.floats(0.1, 3), st.floats(1, 4), st.floats(0.5, 2))
 def test_density_and_radius_lay_down_the_ink_together(darkness, low, ratio, scale):
-    rule = Rule(low, low * ratio, scale)
+    rule = DotRule(low, low * ratio, scale)
     d = np.array([darkness])
     assert low <= rule.radius(d)[0] <= low * ratio
     assert rule.density(d)[0] * math.pi * rule.radius(d)[0] ** 2 == pytest.approx(ink_for(d)[0])
@@ -67,8 +67,8 @@ def test_a_number_and_sizes_meet_or_thin(seed, low, ratio, n):
     rule = rule_for(darkness, n, (low, low * ratio), NO_RIM)
     found = rule.density(darkness).sum()
     assert (rule.radius_min, rule.radius_max) == (low, low * ratio)
-    least = Rule(low, low * ratio, 100).density(darkness).sum()
-    most = Rule(low, low * ratio, 1e-3).density(darkness).sum()
+    least = DotRule(low, low * ratio, 100).density(darkness).sum()
+    most = DotRule(low, low * ratio, 1e-3).density(darkness).sum()
     assert found == pytest.approx(min(n, most), rel=5e-3)
     assert (rule.thin < 1) == (n < least * (1 - 1e-9)) or n == pytest.approx(least, rel=1e-6)
 
@@ -76,9 +76,9 @@ def test_a_number_and_sizes_meet_or_thin(seed, low, ratio, n):
 def test_shortfall_is_where_thin_dots_are_too_few():
     darkness = np.zeros((40, 100), np.float32)
     darkness[10:30, 50:] = 0.9
-    full = Rule(1.0, 2.0)
+    full = DotRule(1.0, 2.0)
     assert shortfall(darkness, full, 0.5, 100, None).share == 0.0
-    lack = shortfall(darkness, Rule(1.0, 2.0, 9.0, thin=0.5), 0.5, 100, None)
+    lack = shortfall(darkness, DotRule(1.0, 2.0, 9.0, thin=0.5), 0.5, 100, None)
     assert lack.share == pytest.approx(0.25)
     assert 0.3 < lack.missing < 0.6
     assert lack.box_mm == (25.0, 5.0, 50.0, 15.0)
@@ -145,32 +145,32 @@ def test_dots_at_one_place_and_far_off_ones_are_survived():
 @given(st.integers(1, 400), st.integers(1, 400), st.integers(1, 100_000))
 def test_a_sheet_is_as_fine_as_its_dots_need(h, w, n):
     reference = Reference(np.full((h, w), 0.4, np.float32), 100.0)
-    sheet = Sheet.of(reference, n, None, bleeds=True)
-    assert n / sheet.darkness.size <= 0.25 + 1e-9
-    assert sheet.darkness.shape[1] * sheet.pixel_mm == pytest.approx(100.0)
-    outline = sheet.outline_mm()
-    assert np.allclose(outline[0], -outline[2] + sheet.size_mm)
+    raster = PageRaster.of(reference, n, None, bleeds=True)
+    assert n / raster.darkness.size <= 0.25 + 1e-9
+    assert raster.darkness.shape[1] * raster.pixel_mm == pytest.approx(100.0)
+    outline = raster.outline_mm()
+    assert np.allclose(outline[0], -outline[2] + raster.size_mm)
 
 
 def test_a_fine_picture_is_averaged_and_white_kept_white():
     rng = np.random.default_rng(1)
     picture = rng.random((3203, 3301), dtype=np.float32)
     picture[:, 1500:] = 0.0
-    sheet = Sheet.of(Reference(picture, 330.1), 1000, None, bleeds=False)
-    assert sheet.darkness.size < picture.size / 3
-    assert sheet.darkness.mean() == pytest.approx(picture.mean(), rel=2e-3)
-    assert (sheet.darkness[:, -300:] == 0).all()
+    raster = PageRaster.of(Reference(picture, 330.1), 1000, None, bleeds=False)
+    assert raster.darkness.size < picture.size / 3
+    assert raster.darkness.mean() == pytest.approx(picture.mean(), rel=2e-3)
+    assert (raster.darkness[:, -300:] == 0).all()
 
 
 def test_trimming_keeps_the_number_and_the_page():
     rng = np.random.default_rng(2)
-    sheet = Sheet.of(Reference(np.full((100, 100), 0.5, np.float32), 100.0), 1000, None, True)
-    assert sheet.bleed > 0
-    size = np.array(sheet.size_mm) / sheet.pixel_mm
-    spread = size + 2 * sheet.bleed
+    raster = PageRaster.of(Reference(np.full((100, 100), 0.5, np.float32), 100.0), 1000, None, True)
+    assert raster.bleed > 0
+    size = np.array(raster.size_mm) / raster.pixel_mm
+    spread = size + 2 * raster.bleed
     n = round(1000 * float((spread / size).prod() * (1 - 0.02)))
-    points = rng.random((n, 2)) * spread - sheet.bleed
-    kept = sheet.trim(points, 1000)
+    points = rng.random((n, 2)) * spread - raster.bleed
+    kept = raster.trim(points, 1000)
     assert ((kept > 0) & (kept < size)).all()
     assert abs(len(kept) - 1000) < 40
     inside = ((points > 0) & (points < size)).all(axis=1)

@@ -14,7 +14,7 @@ from PIL import Image
 
 from stippler.app import App
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
+from stippler.ui.window.scripted_host import Host
 
 
 @dataclass(frozen=True)

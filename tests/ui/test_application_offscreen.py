@@ -14,12 +14,12 @@ from PIL import Image
 
 from stippler.app import App
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
-from stippler.ui.layout import BRUSH, DRAWING, HISTORY, VIEW
-from stippler.ui.place import Place
+from stippler.ui.panels.layout import BRUSH, DRAWING, HISTORY, VIEW
 from stippler.ui.preferences import FILE, Preferences
 from stippler.ui.theme import DARK, PANEL_WIDTH, STRIP_WIDTH
 from stippler.ui.widgets import Widgets
+from stippler.ui.window.placement import Place
+from stippler.ui.window.scripted_host import Host
 
 from .conftest import Desk
 
@@ -488,7 +488,7 @@ def test_a_file_that_is_being_written_is_finished_first(
 ) -> None:
     from threading import Event
 
-    from stippler.ui import work
+    from stippler.jobs import work
 
     opened(desk, picture)
     gate, write = Event(), work.export_drawing

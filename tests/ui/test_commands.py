@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from stippler.ui.commands import CTRL, CTRL_SHIFT, Command, Commands, Key
-from stippler.ui.events import KeyDown, Mods
-from stippler.ui.fuzzy import match
-from stippler.ui.keymap import FILE, is_modifier, load_keys, refusal, save_keys
-from stippler.ui.panels.keys import KeyList
+from stippler.editor.commands import CTRL, CTRL_SHIFT, Command, Commands, Key
+from stippler.editor.events import KeyDown, Mods
+from stippler.editor.fuzzy import match
+from stippler.editor.keymap import FILE, is_modifier, load_keys, refusal, save_keys
+from stippler.ui.popups.key_list import KeyList
 
 
 def made(ran: list[str] | None = None) -> Commands:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from stippler.ui.garbage import _ENOUGH, Garbage
+from stippler.editor.garbage_collection import _ENOUGH, Garbage
 
 
 class Ring:

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stippler.drawing.drawing import Page
-from stippler.ui.commands import CTRL, Command, Commands, Key
-from stippler.ui.events import (
+from stippler.editor.commands import CTRL, Command, Commands, Key
+from stippler.editor.events import (
     LEFT,
     MIDDLE,
     RIGHT,
@@ -25,11 +25,21 @@ from stippler.ui.events import (
     Released,
     Scrolled,
 )
-from stippler.ui.messages import ERROR, INFO, Messages
-from stippler.ui.pointer import Pointer
-from stippler.ui.schedule import Schedule
-from stippler.ui.states import Change, Hand, Idle, Pan, Panning, State, Turn, Turning, Zoom
-from stippler.ui.view import View
+from stippler.editor.messages import ERROR, INFO, Messages
+from stippler.editor.pointer import Pointer
+from stippler.editor.pointer_states import (
+    Change,
+    Hand,
+    Idle,
+    Pan,
+    Panning,
+    State,
+    Turn,
+    Turning,
+    Zoom,
+)
+from stippler.editor.schedule import Schedule
+from stippler.editor.view import View
 
 PAGE = Page(100.0, 50.0)
 SIZE = (800, 600)

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stippler.drawing.drawing import Page
-from stippler.ui.events import Event, FocusLost, KeyDown, KeyUp
-from stippler.ui.lens import LensKey, place_lens
+from stippler.editor.events import Event, FocusLost, KeyDown, KeyUp
+from stippler.editor.view import View
+from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.look import Look
-from stippler.ui.view import View
 
 SIZE = (800, 600)
 

@@ -10,8 +10,8 @@ import pytest
 
 from stippler.brushes import effects
 from stippler.drawing.dots import Dots
-from stippler.ui.layout import BRUSH, HISTORY
-from stippler.ui.messages import ERROR
+from stippler.editor.messages import ERROR
+from stippler.ui.panels.layout import BRUSH, HISTORY
 
 NAMES = [f.name for f in fields(Dots)]
 
@@ -30,7 +30,7 @@ def opened(desk, picture: Path):
     desk.host.drop(picture)
     desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
     desk.host.settle()
-    return desk.app.session.editing
+    return desk.app.session.document
 
 
 def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
@@ -45,47 +45,47 @@ def paint(desk, start: tuple[float, float], end: tuple[float, float]) -> None:
 
 
 def test_a_tool_is_clicked_a_stroke_painted_undone_and_done_again(desk, picture: Path) -> None:
-    editing = opened(desk, picture)
-    start = editing.dots.copy()
+    document = opened(desk, picture)
+    start = document.dots.copy()
     shot = desk.host.screenshot()
     desk.host.click("Erase")
     assert desk.app.editor.painting.toolbox.brush.kind == "erase"
     paint(desk, (45, 45), (75, 45))
-    assert len(editing.dots) < len(start)
-    erased = editing.dots.copy()
+    assert len(document.dots) < len(start)
+    erased = document.dots.copy()
     desk.host.move(*on_screen(desk, 110, 80))
     desk.host.settle()
     painted = desk.host.screenshot()
     x, y = (round(v) for v in on_screen(desk, 60, 45))
     assert painted[y - 3 : y + 3, x - 20 : x + 20].mean() > 250 > shot[y - 3 : y + 3].mean()
     desk.host.key("z", ctrl=True)
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     desk.host.key("y", ctrl=True)
-    assert same(editing.dots, erased)
+    assert same(document.dots, erased)
     desk.app.editor.show_panel(HISTORY)
     desk.host.settle()
     desk.host.click("step 0")
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     desk.host.click("Redo")
-    assert same(editing.dots, erased)
+    assert same(document.dots, erased)
 
 
 def test_escape_within_a_stroke_takes_it_back(desk, picture: Path) -> None:
-    editing = opened(desk, picture)
-    start = editing.dots.copy()
+    document = opened(desk, picture)
+    start = document.dots.copy()
     desk.host.key("k")
     desk.host.move(*on_screen(desk, 60, 45))
     desk.host.press("left")
     desk.host.move(*on_screen(desk, 70, 45))
-    assert not same(editing.dots, start)
+    assert not same(document.dots, start)
     desk.host.key("escape")
     desk.host.release("left")
-    assert same(editing.dots, start)
-    assert not editing.history.steps
+    assert same(document.dots, start)
+    assert not document.history.steps
 
 
 def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None:
-    editing = opened(desk, picture)
+    document = opened(desk, picture)
     desk.host.key("b")
     desk.host.settle()
     renderer = desk.app.editor.canvas._renderer()
@@ -97,30 +97,30 @@ def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None
     monkeypatch.setattr(renderer, "set_dots", lambda *_: pytest.fail("all was uploaded"))
     paint(desk, (60, 45), (63, 45))
     assert uploads
-    assert 0 < max(uploads) < len(editing.dots) / 4
+    assert 0 < max(uploads) < len(document.dots) / 4
 
 
 def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
-    editing = opened(desk, picture)
+    document = opened(desk, picture)
     session = desk.app.session
-    start = editing.dots.copy()
+    start = document.dots.copy()
     desk.host.fill("Iterations", "100000")
     desk.host.click("Relax all")
     desk.host.until(lambda: session.done > 2, "some steps")
     desk.host.key("k")
     paint(desk, (60, 45), (66, 45))
     assert session.relaxing
-    edit = editing.history.steps[-1].edit
+    edit = document.history.steps[-1].edit
     assert edit is not None
     change = edit.changes["position_mm"]
     at = session.done
     desk.host.until(lambda: session.done > at + 3, "more steps")
-    assert np.array_equal(editing.dots.position_mm[editing.rows(change.ids)], change.after)
+    assert np.array_equal(document.dots.position_mm[document.rows(change.ids)], change.after)
     desk.host.key("z", ctrl=True)  # the stroke
     assert session.relaxing
     desk.host.key("z", ctrl=True)  # the run, which ends
     assert not session.busy
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
 
 
 def test_a_new_page_is_painted_on(desk) -> None:
@@ -139,7 +139,7 @@ def test_a_new_page_is_painted_on(desk) -> None:
     desk.host.key("a")
     desk.host.click(on_screen(desk, 20, 30))
     desk.host.click(on_screen(desk, 40, 30))
-    dots = desk.app.session.editing.dots
+    dots = desk.app.session.document.dots
     assert np.allclose(dots.position_mm, [(20, 30), (40, 30)], atol=0.1)
     desk.host.move(*on_screen(desk, 70, 50))
     desk.host.settle()
@@ -148,8 +148,8 @@ def test_a_new_page_is_painted_on(desk) -> None:
 
 
 def test_a_failing_brush_is_told_and_the_editor_lives_on(desk, picture: Path, monkeypatch) -> None:
-    editing = opened(desk, picture)
-    start = editing.dots.copy()
+    document = opened(desk, picture)
+    start = document.dots.copy()
 
     def broken(touch: object) -> None:
         raise RuntimeError("on purpose")
@@ -157,17 +157,17 @@ def test_a_failing_brush_is_told_and_the_editor_lives_on(desk, picture: Path, mo
     monkeypatch.setitem(effects.EFFECTS, "jitter", broken)
     desk.host.key("j")
     paint(desk, (60, 45), (66, 45))
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     assert desk.app.session.messages.log[-1].level == ERROR
     assert "on purpose" in desk.host.said()
     desk.host.key("x")
     desk.host.click(on_screen(desk, 60, 45))
-    assert len(editing.dots) == len(start) - 1
+    assert len(document.dots) == len(start) - 1
 
 
 def test_a_selection_is_made_and_worked_on(desk, picture: Path) -> None:
-    editing = opened(desk, picture)
-    n = len(editing.dots)
+    document = opened(desk, picture)
+    n = len(document.dots)
     desk.host.key("m")
     paint(desk, (40, 30), (80, 60))
     painting = desk.app.editor.painting
@@ -178,13 +178,13 @@ def test_a_selection_is_made_and_worked_on(desk, picture: Path) -> None:
     for label in ("Fix dots", "Free dots", "Relax dots", "Jitter dots", "Larger", "Smaller"):
         desk.host.click(label)
     desk.host.click("Duplicate")
-    assert len(editing.dots) == n + chosen
+    assert len(document.dots) == n + chosen
     desk.host.key("delete")
-    assert len(editing.dots) == n
-    assert len(editing.history.steps) == 8
+    assert len(document.dots) == n
+    assert len(document.history.steps) == 8
     for _ in range(8):
         desk.host.key("z", ctrl=True)
-    assert len(editing.dots) == n
+    assert len(document.dots) == n
     desk.host.key("a", ctrl=True)
     assert painting.n_selected == n
     desk.host.key("escape")
@@ -210,16 +210,16 @@ def test_the_brush_panel_changes_the_brush_and_brushes_are_kept(
 
 
 def test_stippling_again_is_a_step_that_can_be_taken_back(desk, picture: Path) -> None:
-    editing = opened(desk, picture)
-    first = editing.dots.copy()
+    document = opened(desk, picture)
+    first = document.dots.copy()
     desk.host.fill("Number", "150")
     desk.host.click("Start")
     desk.host.until(lambda: not desk.app.session.busy, "the drawing")
     desk.host.settle()
-    assert desk.app.session.editing is editing
-    assert len(editing.dots) < len(first)
+    assert desk.app.session.document is document
+    assert len(document.dots) < len(first)
     desk.host.key("z", ctrl=True)
-    assert same(editing.dots, first)
+    assert same(document.dots, first)
 
 
 def test_dots_that_are_still_being_stippled_are_painted_on(desk, picture: Path) -> None:
@@ -230,27 +230,27 @@ def test_dots_that_are_still_being_stippled_are_painted_on(desk, picture: Path) 
     assert not session.paintable
     desk.host.key("e")
     paint(desk, (50, 45), (70, 45))
-    editing = session.editing
+    document = session.document
     assert session.relaxing
     assert session.done > 1
-    (run, stroke) = editing.history.steps
+    (run, stroke) = document.history.steps
     assert run.is_open
     erased = stroke.edit.removed.dots.id
     assert len(erased)
     desk.host.key("b")
     paint(desk, (50, 35), (60, 35))
-    resized = editing.history.steps[-1].edit.changes["radius_mm"]
+    resized = document.history.steps[-1].edit.changes["radius_mm"]
     at = session.done
     desk.host.until(lambda: session.done > at + 3, "more steps")
     session.stop()
     assert not session.busy
-    assert (editing.rows(erased) < 0).all()
-    kept = editing.rows(resized.ids)
-    assert np.array_equal(editing.dots.radius_mm[kept], resized.after)
+    assert (document.rows(erased) < 0).all()
+    kept = document.rows(resized.ids)
+    assert np.array_equal(document.dots.radius_mm[kept], resized.after)
     for _ in range(3):
         desk.host.key("z", ctrl=True)
-    assert editing.history.n_done == 0
-    assert (editing.rows(erased) >= 0).all()
+    assert document.history.n_done == 0
+    assert (document.rows(erased) >= 0).all()
 
 
 def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
@@ -264,12 +264,12 @@ def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
     desk.host.key("b")
     paint(desk, (50, 45), (70, 45))
     assert session.phase == "paused"
-    before = session.editing.dots.copy()
-    touched = session.editing.history.steps[-1].edit.changes["radius_mm"].ids
+    before = session.document.dots.copy()
+    touched = session.document.history.steps[-1].edit.changes["radius_mm"].ids
     session.resume()
     desk.host.until(lambda: not session.busy, "the end")
     assert session.phase == "done"
-    dots = session.editing.dots
+    dots = session.document.dots
     assert np.array_equal(dots.id, before.id)
     by_hand = np.isin(dots.id, touched)
     same_size = dots.radius_mm == before.radius_mm
@@ -277,7 +277,7 @@ def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
     assert same_size[~by_hand].mean() < 0.1
     session.undo()
     session.undo()
-    assert not session.editing.history.n_done
+    assert not session.document.history.n_done
 
 
 def test_a_press_on_a_panel_is_no_corner_of_a_polygon(desk, picture):

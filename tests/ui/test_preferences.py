@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from stippler.stippling.plan import Plan
-from stippler.ui.place import Place
 from stippler.ui.preferences import FILE, LAYOUT_FILE, N_RECENT, Preferences
 from stippler.ui.theme import DARK, LIGHT
+from stippler.ui.window.placement import Place
 
 VALUES: dict[str, Any] = {
     "tone": "perceptual",

@@ -77,8 +77,8 @@ def page_of(desk) -> np.ndarray:
 
 @pytest.mark.parametrize("name", BRUSHES)
 def test_a_press_leaves_what_hovering_showed(opened, name: str) -> None:
-    editing = opened.app.session.editing
-    start = editing.dots.copy()
+    document = opened.app.session.document
+    start = document.dots.copy()
     hover(opened, AT)
     plain = page_of(opened)
     n_drawn = opened.app.editor.canvas.n_drawn
@@ -86,14 +86,14 @@ def test_a_press_leaves_what_hovering_showed(opened, name: str) -> None:
     hover(opened, AT)
     shown = page_of(opened)
     assert np.abs(shown - plain).max() > 150
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     assert opened.app.editor.canvas.n_drawn == n_drawn  # only what lies under the tip
     opened.host.press()
     opened.host.release()
     opened.app.editor.painting.toolbox.choose(-1)
     opened.host.settle()
     left = page_of(opened)
-    assert not same(editing.dots, start)
+    assert not same(document.dots, start)
     assert np.abs(shown - left).max() <= 24
     assert np.abs(shown - left).mean() < 0.02
 

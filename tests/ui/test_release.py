@@ -11,8 +11,8 @@ import pytest
 
 from stippler.app import App
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
-from stippler.ui.layout import SHAPE
+from stippler.ui.panels.layout import SHAPE
+from stippler.ui.window.scripted_host import Host
 
 MAKERS = ("buffer", "texture", "renderbuffer", "framebuffer", "program", "vertex_array")
 

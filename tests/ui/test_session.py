@@ -12,14 +12,14 @@ import pytest
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.drawing.reference import Reference
+from stippler.editor.messages import ERROR, INFO, WARNING
+from stippler.editor.session import Session
 from stippler.errors import PictureError
+from stippler.jobs.work import Source, Work
 from stippler.jobs.worker import Update
 from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress
 from stippler.stippling.tone import Shortfall
-from stippler.ui.messages import ERROR, INFO, WARNING
-from stippler.ui.session import Session
-from stippler.ui.work import Source, Work
 
 
 class HandWorker:
@@ -130,7 +130,7 @@ def test_a_picture_is_opened_stippled_and_becomes_a_drawing(stage: Stage) -> Non
 def test_an_adjusted_picture_makes_new_dots_as_a_step_that_can_be_undone(stage: Stage) -> None:
     session = stage.session
     picture = opened(stage, 5)
-    editing, lighter = session.editing, Adjustment(brightness=0.2)
+    document, lighter = session.document, Adjustment(brightness=0.2)
     assert not session.outdated
     session.adjustment = lighter
     assert session.outdated
@@ -140,10 +140,10 @@ def test_an_adjusted_picture_makes_new_dots_as_a_step_that_can_be_undone(stage: 
     assert known is picture  # not read again
     adjusted = picture.adjusted(lighter)
     stage.tell(Work("done", 1, 1, adjusted, dots(7, "done")), "finished")
-    assert session.editing is editing
+    assert session.document is document
     assert session.reference is adjusted
-    assert editing is not None
-    assert editing.drawing.reference is adjusted  # as brushes see it
+    assert document is not None
+    assert document.drawing.reference is adjusted  # as brushes see it
     assert not session.outdated
     assert session.n_dots == 7
     session.undo()
@@ -382,11 +382,11 @@ def written(stage: Stage, path: Path) -> None:
 
 
 def erased(stage: Stage, *rows: int) -> None:
-    editing = stage.session.editing
-    assert editing is not None
-    editing.begin("Erase")
-    editing.remove(np.array(rows))
-    editing.commit()
+    document = stage.session.document
+    assert document is not None
+    document.begin("Erase")
+    document.remove(np.array(rows))
+    document.commit()
 
 
 def test_work_of_a_hand_is_unsaved_until_a_file_holds_it(stage: Stage, tmp_path: Path) -> None:
@@ -413,8 +413,8 @@ def test_a_relaxation_after_the_export_is_unsaved_only_with_a_hands_work(
     opened(stage, 5)
     session = stage.session
     session.relax(1, weighted=True)
-    stage.tell(Work("relax", 1, 1, moved_mm=session.editing.dots.position_mm + 0.01), "finished")
-    assert session.editing.history.n_done == 1
+    stage.tell(Work("relax", 1, 1, moved_mm=session.document.dots.position_mm + 0.01), "finished")
+    assert session.document.history.n_done == 1
     assert not session.unsaved
     erased(stage, 1)
     written(stage, tmp_path / "out.csv")
@@ -425,7 +425,7 @@ def test_a_relaxation_after_the_export_is_unsaved_only_with_a_hands_work(
 
 def test_a_stroke_under_way_is_unsaved(stage: Stage) -> None:
     opened(stage, 5)
-    stage.session.editing.begin("Erase")
+    stage.session.document.begin("Erase")
     assert stage.session.unsaved
 
 

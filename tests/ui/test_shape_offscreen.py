@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from stippler.drawing.dots import Dots
-from stippler.ui.events import NO_MODS
-from stippler.ui.layout import SHAPE
+from stippler.editor.events import NO_MODS
+from stippler.ui.panels.layout import SHAPE
 
 NAMES = [f.name for f in fields(Dots)]
 
@@ -58,7 +58,7 @@ def let_go(desk) -> None:
 
 
 def labels(desk) -> list[str]:
-    return [step.label for step in desk.app.session.editing.history.steps]
+    return [step.label for step in desk.app.session.document.history.steps]
 
 
 @pytest.mark.parametrize(
@@ -66,12 +66,12 @@ def labels(desk) -> list[str]:
     [("Size", 0.7, "Resize"), ("Elongation", 0.9, "Elongate"), ("Roughness", 0.9, "Roughen")],
 )
 def test_what_a_held_slider_shows_is_made_when_it_is_let_go(shaping, label, share, step) -> None:
-    editing = shaping.app.session.editing
-    start, plain = editing.dots.copy(), page_of(shaping)
+    document = shaping.app.session.document
+    start, plain = document.dots.copy(), page_of(shaping)
     hold(shaping, label, share)
     shown = page_of(shaping)
     assert np.abs(shown - plain).max() > 150
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     assert not labels(shaping)
     let_go(shaping)
     left = page_of(shaping)
@@ -79,7 +79,7 @@ def test_what_a_held_slider_shows_is_made_when_it_is_let_go(shaping, label, shar
     assert np.abs(shown - left).max() <= 24
     assert np.abs(shown - left).mean() < 0.02
     shaping.host.key("z", ctrl=True)
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     assert (page_of(shaping) == plain).all()
 
 
@@ -93,25 +93,25 @@ def test_nothing_is_uploaded_while_a_slider_is_held(shaping, monkeypatch) -> Non
 
 
 def test_escape_puts_back_what_is_held(shaping) -> None:
-    editing = shaping.app.session.editing
-    start, plain = editing.dots.copy(), page_of(shaping)
+    document = shaping.app.session.document
+    start, plain = document.dots.copy(), page_of(shaping)
     hold(shaping, "Elongation", 0.9)
     shaping.host.key("escape")
     shaping.host.move(400, 600)
     assert (page_of(shaping) == plain).all()
     let_go(shaping)
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     assert not labels(shaping)
 
 
 def test_only_the_selection_is_shaped(shaping) -> None:
-    editing, painting = shaping.app.session.editing, shaping.app.editor.painting
+    document, painting = shaping.app.session.document, shaping.app.editor.painting
     shaping.host.click("Selection")
     plain = page_of(shaping)
     hold(shaping, "Elongation", 0.9)  # nothing is selected
     let_go(shaping)
     assert not labels(shaping)
-    ids = editing.dots.id[editing.dots.position_mm[:, 0] < 60]
+    ids = document.dots.id[document.dots.position_mm[:, 0] < 60]
     painting.toolbox.selection.choose(ids.copy(), NO_MODS)
     shaping.host.move(600, 500)
     assert (page_of(shaping) != plain).any()  # they are marked
@@ -120,20 +120,20 @@ def test_only_the_selection_is_shaped(shaping) -> None:
     let_go(shaping)
     left = page_of(shaping)
     assert labels(shaping) == ["Elongate selected dots"]
-    is_long = editing.dots.elongation > 1
-    assert np.array_equal(is_long, np.isin(editing.dots.id, ids))
+    is_long = document.dots.elongation > 1
+    assert np.array_equal(is_long, np.isin(document.dots.id, ids))
     assert np.abs(shown - left).max() <= 24
 
 
 def test_pens_show_under_the_pointer_and_are_taken_by_a_click(shaping) -> None:
-    editing = shaping.app.session.editing
-    start, plain = editing.dots.copy(), page_of(shaping)
+    document = shaping.app.session.document
+    start, plain = document.dots.copy(), page_of(shaping)
     shaping.host.move(*shaping.host.place("Stick"))
     shown = page_of(shaping)
     assert np.abs(shown - plain).max() > 150
     shaping.host.move(500, 600)
     assert (page_of(shaping) == plain).all()
-    assert same(editing.dots, start)
+    assert same(document.dots, start)
     shaping.host.click("Stick")
     shaping.host.move(500, 600)
     assert np.abs(page_of(shaping) - shown).max() <= 24
@@ -144,7 +144,7 @@ def test_pens_show_under_the_pointer_and_are_taken_by_a_click(shaping) -> None:
 
 
 def test_dots_turn_along_the_picture(shaping) -> None:
-    editing = shaping.app.session.editing
+    document = shaping.app.session.document
     hold(shaping, "Elongation", 0.9)
     let_go(shaping)
     panel = shaping.app.editor.shaping
@@ -158,24 +158,24 @@ def test_dots_turn_along_the_picture(shaping) -> None:
     assert labels(shaping)[-1] == "Turn all dots"
     hold(shaping, "Scatter", 0.0)
     let_go(shaping)
-    from_middle = editing.dots.position_mm - (60.0, 45.0)
+    from_middle = document.dots.position_mm - (60.0, 45.0)
     away = np.hypot(*from_middle.T)
     at_rim = away > 27.0
     assert at_rim.sum() > 8
     along = np.arctan2(*from_middle[at_rim].T[::-1]) + np.pi / 2
-    off = np.sin(editing.dots.angle_rad[at_rim] - along)
+    off = np.sin(document.dots.angle_rad[at_rim] - along)
     assert np.abs(off).mean() < 0.15
 
 
 def test_a_drawing_is_made_with_a_pen_and_seen_so_meanwhile(shaping) -> None:
     session, editor = shaping.app.session, shaping.app.editor
-    first = session.editing.dots.copy()
+    first = session.document.dots.copy()
     assert session.edit_plan(pen="stick")
     session.start()
     shaping.host.until(lambda: session.position_mm is not None, "dots")
     shaping.host.until(lambda: editor._preview is not None or not session.busy, "a frame")
     assert not session.busy or editor._preview.change.roughens
     shaping.host.until(lambda: not session.busy, "the drawing")
-    dots = session.editing.dots
+    dots = session.document.dots
     assert dots.roughness.min() > 0.5
     assert np.array_equal(dots.radius_mm, first.radius_mm)

@@ -11,11 +11,20 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from stippler.brushes import effects
 from stippler.brushes.kinds import KINDS
 from stippler.brushes.presets import load_brushes
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.editing import Editing
-from stippler.ui.events import FocusLost, KeyDown, KeyUp, Mods, Moved, Pressed, Released, Scrolled
-from stippler.ui.tools.toolbox import Toolbox
+from stippler.editor.events import (
+    FocusLost,
+    KeyDown,
+    KeyUp,
+    Mods,
+    Moved,
+    Pressed,
+    Released,
+    Scrolled,
+)
+from stippler.editor.tools.toolbox import Toolbox
 
 NAMES = [f.name for f in fields(Dots)]
 PX_PER_MM = 10.0
@@ -31,7 +40,7 @@ def make_editing(n=200):
     drawing = Drawing.blank(Page(40, 30))
     drawing.dots = Dots.round(rng.uniform(0, 1, (n, 2)) * (40, 30), 0.2)
     drawing.dots.fixed[::9] = True
-    return Editing(drawing)
+    return Document(drawing)
 
 
 class Hands:
@@ -40,12 +49,12 @@ class Hands:
     def __init__(self, path, n=200):
         self.said = []
         self.box = Toolbox(path, lambda text, level: self.said.append((level, text)))
-        self.editing = make_editing(n)
+        self.document = make_editing(n)
         self.t = 0.0
 
     def take(self, event):
         return self.box.take(
-            event, self.editing, lambda x, y: (x / PX_PER_MM, y / PX_PER_MM), PX_PER_MM
+            event, self.document, lambda x, y: (x / PX_PER_MM, y / PX_PER_MM), PX_PER_MM
         )
 
     def at(self, kind, place, mods=Mods(), button="left"):  # noqa: B008 - frozen
@@ -73,7 +82,7 @@ class Hands:
 
     @property
     def labels(self):
-        return [step.label for step in self.editing.history.steps]
+        return [step.label for step in self.document.history.steps]
 
 
 @pytest.fixture
@@ -82,35 +91,35 @@ def hands(tmp_path):
 
 
 def test_without_a_brush_nothing_is_taken(hands):
-    start = hands.editing.dots.copy()
+    start = hands.document.dots.copy()
     hands.drag((5, 5), (20, 20))
     assert not hands.at(Pressed, (5, 5))
-    assert same(start, hands.editing.dots)
+    assert same(start, hands.document.dots)
 
 
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS if kind.rhythm != "select"])
 def test_a_stroke_is_a_step_and_escape_takes_it_back(hands, kind):
     hands.use(kind, radius_mm=5.0)
-    start = hands.editing.dots.copy()
+    start = hands.document.dots.copy()
     if kind == "unfix":
-        assert hands.editing.dots.fixed.any()
+        assert hands.document.dots.fixed.any()
     assert hands.at(Pressed, (10, 10))
     for x in range(11, 30):
         hands.at(Moved, (x, 12))
     hands.box.rest(hands.t + 0.3)
-    assert not same(start, hands.editing.dots)
+    assert not same(start, hands.document.dots)
     assert hands.key("escape")
-    assert same(start, hands.editing.dots)
+    assert same(start, hands.document.dots)
     assert not hands.labels
     hands.drag((10, 10), (20, 12), (29, 12))
     assert hands.labels == [hands.box.brush.name]
-    hands.editing.undo()
-    assert same(start, hands.editing.dots)
+    hands.document.undo()
+    assert same(start, hands.document.dots)
 
 
 def test_timed_brushes_go_on_while_the_pointer_rests(hands):
     hands.use("spray", values={"per_s": 100.0, "apart_mm": 0.0})
-    n = len(hands.editing.dots)
+    n = len(hands.document.dots)
     hands.at(Pressed, (20, 15))
     assert hands.box.is_timed
     t = hands.t
@@ -119,7 +128,7 @@ def test_timed_brushes_go_on_while_the_pointer_rests(hands):
     hands.t += 1.0
     hands.at(Released, (20, 15))
     assert not hands.box.is_timed
-    assert 95 <= len(hands.editing.dots) - n <= 105
+    assert 95 <= len(hands.document.dots) - n <= 105
 
 
 def test_losing_the_window_ends_the_stroke_and_keeps_it(hands):
@@ -152,17 +161,17 @@ def test_a_click_with_shift_draws_a_straight_line(hands):
     hands.drag((5, 15), (5, 15))
     hands.at(Pressed, (35, 15), SHIFT)
     hands.at(Released, (35, 15))
-    x, y = hands.editing.dots.position_mm.T
+    x, y = hands.document.dots.position_mm.T
     assert not ((x > 5) & (x < 35) & (np.abs(y - 15) < 0.4)).any()
     assert hands.labels == ["Erase"] * len(hands.labels)
 
 
 def test_a_failing_brush_takes_its_stroke_back_and_rests(hands, monkeypatch):
     hands.use("push")
-    start = hands.editing.dots.copy()
+    start = hands.document.dots.copy()
     hands.at(Pressed, (20, 15))
     hands.at(Moved, (25, 15))
-    assert not same(start, hands.editing.dots)
+    assert not same(start, hands.document.dots)
 
     def broken(touch):
         raise RuntimeError("broken")
@@ -170,14 +179,14 @@ def test_a_failing_brush_takes_its_stroke_back_and_rests(hands, monkeypatch):
     monkeypatch.setitem(effects.EFFECTS, "push", broken)
     with pytest.raises(RuntimeError):
         hands.at(Moved, (30, 15))
-    assert same(start, hands.editing.dots)
+    assert same(start, hands.document.dots)
     assert not hands.box.is_busy
-    assert not hands.editing.in_stroke
+    assert not hands.document.in_stroke
 
 
 def inside(hands, test):
-    x, y = hands.editing.dots.position_mm.T
-    return set(hands.editing.dots.id[test(x, y)])
+    x, y = hands.document.dots.position_mm.T
+    return set(hands.document.dots.id[test(x, y)])
 
 
 def test_selecting_by_rectangle_lasso_polygon_and_area(hands):
@@ -223,21 +232,21 @@ def test_a_selection_is_carried_by_one_of_its_dots(hands):
     hands.use("select")
     hands.drag((10, 8), (20, 18))
     ids = hands.box.selection.ids
-    rows = hands.editing.rows(ids)
-    before = hands.editing.dots.position_mm[rows].copy()
-    fixed = hands.editing.dots.fixed[rows]
+    rows = hands.document.rows(ids)
+    before = hands.document.dots.position_mm[rows].copy()
+    fixed = hands.document.dots.fixed[rows]
     grip = tuple(before[0])
     hands.drag(grip, (grip[0] + 3, grip[1] + 2))
-    moved = hands.editing.dots.position_mm[rows] - before
+    moved = hands.document.dots.position_mm[rows] - before
     assert np.allclose(moved[~fixed], (3, 2))
     assert not moved[fixed].any()
     assert hands.labels == ["Move selection"]
-    start = hands.editing.dots.copy()
-    free = hands.editing.dots.position_mm[rows][~fixed][0]
+    start = hands.document.dots.copy()
+    free = hands.document.dots.position_mm[rows][~fixed][0]
     hands.at(Pressed, free)
     hands.at(Moved, free + 5)
     hands.key("escape")
-    assert same(start, hands.editing.dots)
+    assert same(start, hands.document.dots)
 
 
 def test_brushes_are_copied_kept_and_deleted(hands, tmp_path):
@@ -261,10 +270,10 @@ def test_pressure_comes_from_a_key_or_from_speed(hands):
     hands.use("size", pressure="key", values={"how": "enlarge", "amount": 50.0})
 
     def growth():
-        before = hands.editing.dots.radius_mm.copy()
+        before = hands.document.dots.radius_mm.copy()
         hands.drag((20, 15), (20, 15))
-        grown = (hands.editing.dots.radius_mm / before).max()
-        hands.editing.undo()
+        grown = (hands.document.dots.radius_mm / before).max()
+        hands.document.undo()
         return grown
 
     full = growth()
@@ -289,7 +298,7 @@ class ToolMachine(RuleBasedStateMachine):
         from pathlib import Path
 
         self.hands = Hands(Path("none.json"), 60)
-        self.start = self.hands.editing.dots.copy()
+        self.start = self.hands.document.dots.copy()
         self.fixed = {}
         self.frozen = None
 
@@ -298,11 +307,11 @@ class ToolMachine(RuleBasedStateMachine):
         if hands.box.is_busy:
             hands.key("escape")
             hands.key("escape")
-        hands.editing.end_run()
-        while hands.editing.undo():
+        hands.document.end_run()
+        while hands.document.undo():
             pass
-        assert same(hands.editing.dots, self.start)
-        hands.editing.history.close()
+        assert same(hands.document.dots, self.start)
+        hands.document.history.close()
 
     @rule(k=st.integers(0, len(KINDS) - 1))
     def choose(self, k):
@@ -330,34 +339,34 @@ class ToolMachine(RuleBasedStateMachine):
         self.hands.t += dt
         self.hands.box.rest(self.hands.t)
 
-    @precondition(lambda self: not self.hands.editing.in_stroke)
+    @precondition(lambda self: not self.hands.document.in_stroke)
     @rule()
     def undo(self):
-        self.hands.editing.undo()
-        self.frozen = self.frozen if self.hands.editing.in_run else None
+        self.hands.document.undo()
+        self.frozen = self.frozen if self.hands.document.in_run else None
 
-    @precondition(lambda self: not self.hands.editing.in_stroke)
+    @precondition(lambda self: not self.hands.document.in_stroke)
     @rule()
     def redo(self):
-        self.hands.editing.redo()
+        self.hands.document.redo()
 
-    @precondition(lambda self: not self.hands.editing.in_stroke)
+    @precondition(lambda self: not self.hands.document.in_stroke)
     @rule()
     def begin_run(self):
-        self.frozen = self.hands.editing.begin_run("relax")
+        self.frozen = self.hands.document.begin_run("relax")
 
     @precondition(lambda self: self.frozen is not None)
     @rule(seed=st.integers(0, 99))
     def result(self, seed):
         rng = np.random.default_rng(seed)
-        self.hands.editing.merge(rng.uniform(0, 1, (len(self.frozen), 2)) * (40, 30))
+        self.hands.document.merge(rng.uniform(0, 1, (len(self.frozen), 2)) * (40, 30))
 
     @invariant()
     def rules_hold(self):
-        dots = self.hands.editing.dots
+        dots = self.hands.document.dots
         assert len(np.unique(dots.id)) == len(dots)
-        assert np.array_equal(self.hands.editing.rows(dots.id), np.arange(len(dots)))
-        assert (self.hands.editing.bounds.area_at(dots.position_mm) == dots.area).all()
+        assert np.array_equal(self.hands.document.rows(dots.id), np.arange(len(dots)))
+        assert (self.hands.document.bounds.area_at(dots.position_mm) == dots.area).all()
         now = dict(zip(dots.id[dots.fixed].tolist(), dots.position_mm[dots.fixed], strict=True))
         for key in now.keys() & self.fixed.keys():
             assert np.array_equal(now[key], self.fixed[key])

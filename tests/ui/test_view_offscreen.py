@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from stippler.drawing.adjustment import NEUTRAL
-from stippler.ui.layout import VIEW
+from stippler.ui.panels.layout import VIEW
 from stippler.ui.theme import PANEL_WIDTH, STRIP_WIDTH
 
 PLACE = (650.0, 330.0)
@@ -78,7 +78,7 @@ def test_shift_and_the_middle_button_turn_freely(opened) -> None:
 
 
 def test_painting_on_a_turned_and_flipped_page_lands_under_the_brush(opened) -> None:
-    host, editing = opened.host, opened.app.session.editing
+    host, document = opened.host, opened.app.session.document
     host.key("y")
     host.fill("Turned", "50")
     host.key("e")
@@ -89,10 +89,10 @@ def test_painting_on_a_turned_and_flipped_page_lands_under_the_brush(opened) -> 
     host.move(*place)
     host.press()
     host.release()
-    away = np.hypot(*(editing.dots.position_mm - (50.0, 45.0)).T)
+    away = np.hypot(*(document.dots.position_mm - (50.0, 45.0)).T)
     assert before > 0
     assert away.min() > 0.8 * radius
-    assert 0 < 300 - len(editing.dots) < 60
+    assert 0 < 300 - len(document.dots) < 60
     host.move(x + 150.0, y)
     host.settle()
     reach = round(0.5 * radius * opened.app.editor.view.camera.px_per_mm)
@@ -107,14 +107,16 @@ def test_a_rectangle_selects_what_it_shows_on_a_turned_page(opened) -> None:
     b = (a[0] + 60.0, a[1] + 90.0)
     host.drag(a, b, "left")
     chosen = editor.painting.toolbox.selection.ids
-    editing = opened.app.session.editing
-    at = editor.view.camera.page_to_screen(editing.dots.position_mm, editor.view.size_px)
+    document = opened.app.session.document
+    at = editor.view.camera.page_to_screen(document.dots.position_mm, editor.view.size_px)
     at += editor.pointer._origin_px
     inside = ((at > a) & (at < b)).all(axis=1)
     assert 0 < inside.sum() < len(at) / 2
-    assert set(chosen) == set(editing.dots.id[inside])
+    assert set(chosen) == set(document.dots.id[inside])
     host.key("f", shift=True)
-    place = editor.view.camera.page_to_screen(editing.dots.position_mm[inside], editor.view.size_px)
+    place = editor.view.camera.page_to_screen(
+        document.dots.position_mm[inside], editor.view.size_px
+    )
     assert place.min() > 0
     assert (place < editor.view.size_px).all()
     assert editor.view.camera.px_per_mm > 6.0
@@ -170,7 +172,7 @@ def test_the_lens_follows_a_brush_beside_it_while_it_paints(opened) -> None:
     host.move(*on_screen(opened, 60, 45))
     assert editor.canvas.n_lens_drawn > drawn
     host.release()
-    assert len(opened.app.session.editing.dots) < 300
+    assert len(opened.app.session.document.dots) < 300
     editor.show_panel(VIEW)  # the brush's is in front
     host.settle()
     host.click("Magnify")
@@ -184,7 +186,7 @@ def test_the_lens_follows_a_brush_beside_it_while_it_paints(opened) -> None:
 def test_the_picture_is_adjusted_before_ones_eyes_and_then_for_the_dots(opened) -> None:
     host, session, look = opened.host, opened.app.session, opened.app.editor.look
     place = on_screen(opened, 60, 45)
-    editing, ink = session.editing, float((session.editing.dots.radius_mm**2).sum())
+    document, ink = session.document, float((session.document.dots.radius_mm**2).sum())
     assert not look.reference_shown
     host.click("Invert")
     assert session.adjustment.invert
@@ -204,10 +206,10 @@ def test_the_picture_is_adjusted_before_ones_eyes_and_then_for_the_dots(opened) 
     host.until(lambda: session.phase == "done", "new dots")
     host.settle()
     assert session.reference.adjustment == session.adjustment
-    assert session.editing is editing
-    assert float((editing.dots.radius_mm**2).sum()) < 0.75 * ink
+    assert session.document is document
+    assert float((document.dots.radius_mm**2).sum()) < 0.75 * ink
     assert not host.shown("Use for the dots")
     host.click("Reset")
     assert session.adjustment == NEUTRAL
     host.key("z", ctrl=True)
-    assert float((editing.dots.radius_mm**2).sum()) == pytest.approx(ink)
+    assert float((document.dots.radius_mm**2).sum()) == pytest.approx(ink)

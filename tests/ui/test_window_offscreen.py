@@ -10,11 +10,11 @@ import pytest
 from PIL import Image
 
 from stippler.drawing.reference import Reference
+from stippler.jobs.work import Source, Work
 from stippler.stippling.plan import Plan
-from stippler.ui import editor as editor_module
-from stippler.ui.layout import VIEW
+from stippler.ui import editor_window as editor_module
+from stippler.ui.panels.layout import VIEW
 from stippler.ui.theme import DARK, LIGHT
-from stippler.ui.work import Source, Work
 
 MIDDLE_OF_CANVAS = (650.0, 330.0)
 

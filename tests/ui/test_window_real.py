@@ -16,8 +16,8 @@ from PIL import ImageGrab
 
 from stippler.app import App
 from stippler.stippling.plan import Plan
-from stippler.ui.host import Host
 from stippler.ui.theme import LIGHT, Colour
+from stippler.ui.window.scripted_host import Host
 
 pytestmark = pytest.mark.window
 

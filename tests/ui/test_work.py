@@ -12,9 +12,9 @@ import pytest
 
 from stippler.drawing.adjustment import Adjustment
 from stippler.errors import PictureError, StipplerError
+from stippler.jobs import work
+from stippler.jobs.work import Source, stipple_picture
 from stippler.stippling.plan import Plan
-from stippler.ui import work
-from stippler.ui.work import Source, stipple_picture
 
 PLAN = Plan(n_dots=100, iterations=2)
 

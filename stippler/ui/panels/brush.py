@@ -12,9 +12,9 @@ from imgui_bundle import imgui
 from stippler.brushes.brush import LARGEST_MM, SMALLEST_MM, Brush
 from stippler.brushes.kinds import Parameter
 from stippler.brushes.tip import TIP_SHAPES, Tip
+from stippler.editor.commands import Commands
+from stippler.editor.painting import Painting
 from stippler.errors import ParameterError
-from stippler.ui.commands import Commands
-from stippler.ui.painting import Painting
 from stippler.ui.panels.tip_editor import draw_tip_editor
 from stippler.ui.widgets import Widgets
 

@@ -8,9 +8,9 @@ from typing import Any
 from imgui_bundle import imgui
 
 from stippler.drawing.pens import PENS
+from stippler.editor.session import Session
 from stippler.stippling.plan import FIRST_DOTS, GROWTHS, SIZES, STARTS
 from stippler.ui.panels.fill import draw_fill
-from stippler.ui.session import Session
 from stippler.ui.theme import ICON_DICE
 from stippler.ui.widgets import Widgets
 

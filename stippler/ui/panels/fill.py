@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
+from stippler.editor.messages import WARNING
+from stippler.editor.session import Session
 from stippler.errors import ParameterError
 from stippler.stippling.plan import ARRANGEMENTS
-from stippler.ui.messages import WARNING
-from stippler.ui.session import Session
 from stippler.ui.theme import ICON_DICE
 from stippler.ui.widgets import Widgets
 

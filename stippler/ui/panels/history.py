@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.ui.commands import Commands
-from stippler.ui.painting import Painting
-from stippler.ui.session import Session
+from stippler.editor.commands import Commands
+from stippler.editor.painting import Painting
+from stippler.editor.session import Session
 from stippler.ui.widgets import Widgets
 
 
@@ -15,10 +15,10 @@ def draw_history(
 ) -> None:
     """Draw the panel."""
     widgets.heading("History")
-    if session.editing is None:
+    if session.document is None:
         widgets.caption("Nothing has been done yet.")
         return
-    history = session.editing.history
+    history = session.document.history
     gap = 8.0 * widgets.scale
     width = (imgui.get_content_region_avail().x - gap) / 2
     can = session.paintable and not painting.is_busy
@@ -39,8 +39,8 @@ def draw_history(
 
 def _draw_steps(widgets: Widgets, session: Session) -> int | None:
     """List the steps, the last done one marked; return how many a click wants in effect."""
-    assert session.editing is not None
-    history = session.editing.history
+    assert session.document is not None
+    history = session.document.history
     wanted = None
     imgui.begin_child("##steps", (0.0, 0.0))
     clipper = imgui.ListClipper()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.ui.commands import Command, Commands
-from stippler.ui.messages import ERROR, INFO, Messages
+from stippler.editor.commands import Command, Commands
+from stippler.editor.messages import ERROR, INFO, Messages
 from stippler.ui.theme import ICON_WARNING, TEXT_PX, Colour
 from stippler.ui.widgets import Rect, Widgets
 

@@ -7,8 +7,8 @@ import math
 from imgui_bundle import imgui
 
 from stippler.drawing.drawing import MAX_PAGE_MM
-from stippler.ui.commands import Commands
-from stippler.ui.session import Session
+from stippler.editor.commands import Commands
+from stippler.editor.session import Session
 from stippler.ui.theme import ICON_NEW, ICON_OPEN, ICON_SAVE
 from stippler.ui.widgets import Widgets
 

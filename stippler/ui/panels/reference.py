@@ -5,9 +5,9 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from stippler.drawing.adjustment import GAMMA_RANGE, MAX_BRIGHTNESS, NEUTRAL, Adjustment
-from stippler.ui.commands import Commands
+from stippler.editor.commands import Commands
+from stippler.editor.session import Session
 from stippler.ui.look import Look
-from stippler.ui.session import Session
 from stippler.ui.widgets import Widgets
 
 

@@ -9,9 +9,9 @@ from imgui_bundle import imgui
 
 from stippler.drawing.dots import MAX_ELONGATION
 from stippler.drawing.pens import PENS
-from stippler.drawing.shape_change import ShapeChange, Step, to
-from stippler.ui.pen_samples import PenSamples
-from stippler.ui.shaping import DIRECTIONS, Shaping
+from stippler.drawing.shape_change import LinearChange, ShapeChange, to
+from stippler.editor.shaping import DIRECTIONS, Shaping
+from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.widgets import Widgets
 
 _PEN_HEIGHT, _PEN_INDENT = 32.0, 112.0
@@ -74,7 +74,7 @@ def _draw_form(widgets: Widgets, shaping: Shaping) -> None:
     _slider(
         widgets, shaping, ("Size", "Resize"), 100.0, _SIZES,
         "Of each dot, in percent of its radius now.", "%.0f %%",
-        lambda v: ShapeChange(radius=Step(v / 100.0)), imgui.SliderFlags_.logarithmic,
+        lambda v: ShapeChange(radius=LinearChange(v / 100.0)), imgui.SliderFlags_.logarithmic,
     )  # fmt: skip
     _slider(
         widgets, shaping, ("Elongation", "Elongate"), now.elongation, (1.0, MAX_ELONGATION),

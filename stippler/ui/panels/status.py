@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from stippler.camera import Camera, Point
-from stippler.ui.messages import INFO
-from stippler.ui.rates import FrameRate
-from stippler.ui.session import Session
+from stippler.editor.messages import INFO
+from stippler.editor.rates import FrameRate
+from stippler.editor.session import Session
 from stippler.ui.theme import SMALL_PX, STATUS_HEIGHT
 from stippler.ui.widgets import Widgets
 

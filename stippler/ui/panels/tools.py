@@ -5,10 +5,10 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from stippler.brushes.kinds import KINDS
-from stippler.ui.commands import Commands
+from stippler.editor.commands import Commands
+from stippler.editor.tools.toolbox import Toolbox
 from stippler.ui.icons import Pen, draw_icon
 from stippler.ui.theme import STATUS_HEIGHT, STRIP_WIDTH
-from stippler.ui.tools.toolbox import Toolbox
 from stippler.ui.widgets import Widgets
 
 _BUTTON, _ICON = 34.0, 20.0

@@ -1,0 +1,202 @@
+"""What the editor asks its workers for: frozen inputs, and generators of results.
+
+Each result is whole in itself, so that only the latest has to be looked at. Numba, scipy, shapely
+and Pillow are imported here, in the worker, when the first frame has long been shown.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stippler.drawing.adjustment import NEUTRAL, Adjustment
+from stippler.errors import StipplerError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from stippler.drawing.drawing import Drawing
+    from stippler.drawing.reference import Reference
+    from stippler.stippling.plan import Plan
+    from stippler.stippling.stipple import Progress
+
+PREPARE, READ = "prepare", "read"
+_LOOK_S = 0.1  # between two looks at a pause or a stop
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A picture and how tone is taken from it."""
+
+    path: Path
+    tone: str
+    width_mm: float
+    adjustment: Adjustment = NEUTRAL
+
+    def is_read_as(self, other: Source | None) -> bool:
+        """Whether both come from the file alike, however they are adjusted then."""
+        return other is not None and replace(self, adjustment=other.adjustment) == other
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Work:
+    """How far a job has come.
+
+    Attributes
+    ----------
+    stage : str
+        `PREPARE`, `READ`, or a stage of `Progress`.
+    done, total : int
+        Of this stage; a total of 0 is unknown.
+    reference : Reference or None
+        The picture, once it is read.
+    progress : Progress or None
+        The dots, once there are some.
+    moved_mm : (n, 2) float64 or None
+        Where a relaxation of the drawing's own dots has brought them.
+    radius_mm : (n,) float32 or None
+        What their radii are to be.
+    """
+
+    stage: str
+    done: int = 0
+    total: int = 0
+    reference: Reference | None = None
+    progress: Progress | None = None
+    moved_mm: NDArray[np.float64] | None = None
+    radius_mm: NDArray[np.float32] | None = None
+
+
+def stipple_picture(
+    source: Source, plan: Plan, reference: Reference | None, *, is_warm: Callable[[], bool]
+) -> Iterator[Work]:
+    """Stipple a picture from the file, or from its reference where it has been read before.
+
+    Where the kernels are not compiled yet (`is_warm`), a process of its own does that first: it
+    can be ended at any time, and leaves the window's thread alone.
+    """
+    if reference is None:
+        yield Work(READ)
+        from stippler.files.picture import read_picture
+
+        reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+        yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
+    reference = reference.adjusted(source.adjustment)
+    if not is_warm():
+        for n_ready, n_kernels in _prepared_kernels():
+            yield Work(PREPARE, n_ready, n_kernels, reference)
+    from stippler.brushes.warm_up import warm_up_brushes
+    from stippler.stippling.stipple import stages
+
+    for progress in stages(reference, plan):
+        yield Work(progress.stage, progress.done, progress.total, reference, progress)
+    warm_up_brushes()
+
+
+def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Load everything that painting needs, and compile it where it is not."""
+    if not is_warm():
+        for n_ready, n_kernels in _prepared_kernels():
+            yield Work(PREPARE, n_ready, n_kernels)
+    from stippler.brushes.warm_up import warm_up_brushes
+
+    warm_up_brushes()
+    yield Work(PREPARE, 1, 1)
+
+
+def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Iterator[Work]:
+    """Relax the free dots of a drawing that nobody else changes, each within its area."""
+    yield Work("relax", 0, iterations)
+    import numpy as np
+
+    from stippler.stippling.density import DensityField
+    from stippler.stippling.relax import Relaxation
+
+    dots, reference = drawing.dots, drawing.reference
+    used, shape_of_dot = np.unique(dots.area, return_inverse=True)
+    density = None
+    if weighted and reference is not None:
+        # dots settle at the root of their weight
+        density = DensityField(np.square(reference.darkness), reference.pixel_mm)
+    engine = Relaxation(
+        dots.position_mm,
+        [drawing.areas[int(k)].outline_mm for k in used],
+        dots.fixed,
+        shape_of_dot,
+        density,
+    )
+    for k in range(iterations):
+        engine.step()
+        yield Work("relax", k + 1, iterations, moved_mm=engine.points)
+
+
+def carry_on(
+    reference: Reference,
+    plan: Plan,
+    position_mm: NDArray[np.float64],
+    radius_mm: NDArray[np.float32],
+    n_done: int,
+) -> Iterator[Work]:
+    """Go on with a stippling whose dots have become the drawing's after so many steps."""
+    from stippler.stippling.carry_on import carry_on
+
+    yield Work("relax", n_done, plan.iterations)
+    for made in carry_on(reference, plan, position_mm, radius_mm, n_done):
+        solved = made.radius_mm if made.stage == "done" else None
+        yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
+
+
+def _prepared_kernels() -> Iterator[tuple[int, int]]:
+    """Compile the kernels in a process of its own; tell how many of how many are done."""
+    lines: list[str] = []
+    process = subprocess.Popen(
+        [sys.executable, "-m", "stippler.warm"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    output = process.stdout
+    assert output is not None
+    reader = threading.Thread(target=lambda: lines.extend(output), name="preparing", daemon=True)
+    reader.start()
+    try:
+        while reader.is_alive():
+            yield _ready(lines)
+            reader.join(_LOOK_S)
+        if process.wait():
+            raise StipplerError(
+                f"the kernels could not be compiled ({lines[-1] if lines else 'no reason given'})",
+                do="run python -m stippler.warm to see why",
+            )
+    finally:
+        process.kill()
+        process.wait()
+        reader.join()
+        output.close()
+
+
+def _ready(lines: list[str]) -> tuple[int, int]:
+    """Find how many of how many kernels the last line tells of."""
+    found = re.search(r"(\d+)/(\d+)", lines[-1]) if lines else None
+    return (int(found[1]), int(found[2])) if found else (0, 0)
+
+
+def export_drawing(drawing: Drawing, path: Path, dpi: float) -> Iterator[Path]:
+    """Write a drawing to a file; yield its path when it is there."""
+    from stippler.export import save
+
+    save(drawing, path, dpi=dpi)
+    yield path
+
+
+def frozen(drawing: Drawing) -> Drawing:
+    """Copy what an export reads, so that the drawing may change meanwhile."""
+    return replace(drawing, areas=list(drawing.areas), dots=drawing.dots.copy())

@@ -1,0 +1,1 @@
+"""Voronoi cells clipped to their compartments: search, cutting, integrals, relaxation."""

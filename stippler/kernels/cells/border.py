@@ -1,0 +1,184 @@
+"""Cells at the border: the edges near them, their outlines, integrals, and moves kept inside.
+
+An outline is a list of directed segments ``u0, v0, u1, v1`` relative to the dot, the cell on
+their left, those on the compartment's border first.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from stippler.kernels.cells.clip import outline_piece
+from stippler.kernels.cells.field import integrate_edge
+from stippler.kernels.cells.tables import F8, I4, Border, Field, Pads, Spot
+from stippler.kernels.cells.voronoi import cut_cell, reach2_of_cell
+from stippler.kernels.machine.jit import ZERO, inline, inner
+from stippler.kernels.machine.simd import get
+
+_ROUNDING = 1e-12  # of all that is added and taken away again in a sum
+
+
+@inline
+def gather_edges(border: Border, spot: Spot, ring: int, pads: Pads, stamp: int) -> int:
+    """List the border edges in the grid cells up to `ring`, each once."""
+    n = ZERO
+    x0, x1 = max(spot.ix - ring, 0), min(spot.ix + ring, spot.nx - 1)
+    for j in range(max(spot.iy - ring, 0), min(spot.iy + ring, spot.ny - 1) + 1):
+        row = spot.first_cell + j * spot.nx
+        for s in range(border.cell_start[row + x0], border.cell_start[row + x1 + 1]):
+            e = border.edge_of_slot[s]
+            if pads.seen[e] != stamp:
+                pads.seen[e] = stamp
+                pads.near[n] = e
+                n += 1
+    return int(n)
+
+
+@inline
+def border_distance(edge: F8, near: I4, n_near: int, x: float, y: float) -> float:
+    """Return the distance of (x, y) from the nearest of the edges listed."""
+    best = math.inf
+    for s in range(n_near):
+        e = near[s]
+        au, av = x - edge[e, 0], y - edge[e, 1]
+        eu, ev = edge[e, 2] - edge[e, 0], edge[e, 3] - edge[e, 1]
+        t = min(max((au * eu + av * ev) / (eu * eu + ev * ev), 0.0), 1.0)
+        au -= t * eu
+        av -= t * ev
+        best = min(best, au * au + av * av)
+    return math.sqrt(best) * (1.0 - 1e-9)
+
+
+@inner
+def outline_within(
+    m: int, border: Border, spot: Spot, ring: int, pads: Pads, n_near: int, stamp: int
+) -> tuple[int, int, float]:
+    """Outline the dot's piece of the cell within the rings seen; return its reach, squared, too.
+
+    A piece that touches the outermost ring's walls reaches as far as they do, which tells the
+    caller to look further.
+    """
+    cell2 = pads.cell2
+    for r in range(6):
+        for k in range(m):
+            cell2[r, k] = pads.cell[r, k]
+    n2 = m
+    left, top = spot.gx - spot.x, spot.gy - spot.y
+    if spot.ix - ring > 0:
+        n2 = cut_cell(cell2, n2, -1.0, 0.0, -(left + (spot.ix - ring) * spot.h), -1.0)
+    if spot.ix + ring < spot.nx - 1:
+        n2 = cut_cell(cell2, n2, 1.0, 0.0, left + (spot.ix + ring + 1) * spot.h, -1.0)
+    if spot.iy - ring > 0:
+        n2 = cut_cell(cell2, n2, 0.0, -1.0, -(top + (spot.iy - ring) * spot.h), -1.0)
+    if spot.iy + ring < spot.ny - 1:
+        n2 = cut_cell(cell2, n2, 0.0, 1.0, top + (spot.iy + ring + 1) * spot.h, -1.0)
+    near2 = 1e-24 * reach2_of_cell(cell2, n2)
+    n_border, n = outline_piece(n2, spot.x, spot.y, border, pads, n_near, stamp, near2)
+    best = 0.0
+    out = pads.out
+    for s in range(n):
+        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
+        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
+    return n_border, n, best
+
+
+@inline
+def outline_of_cell(cell: F8, m: int, out: F8) -> None:
+    """Write the outline of a cell that no border cuts."""
+    for k in range(m):
+        n = k + 1 if k + 1 < m else 0
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
+
+
+@inline
+def outline_of_lanes(U: Any, V: Any, m: int, out: F8) -> None:
+    """Write the outline of a cell in lanes that no border cuts."""
+    for k in range(m):
+        n = k + 1 if k + 1 < m else 0
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = get(U, k), get(V, k), get(U, n), get(V, n)
+
+
+@inline
+def sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
+    """Return area, both first moments and the second moment about the dot."""
+    area = mu = mv = second = 0.0
+    for s in range(n):
+        au, av, bu, bv = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
+        cross = au * bv - bu * av
+        area += cross
+        mu += cross * (au + bu)
+        mv += cross * (av + bv)
+        second += cross * (au * au + au * bu + bu * bu + av * av + av * bv + bv * bv)
+    return 0.5 * area, mu / 6.0, mv / 6.0, second / 12.0
+
+
+@inner
+def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float, float, float]:
+    """Return the field's mass over the outline and its first moments about the dot.
+
+    A mass that rounding alone could make is none: its moments would lead anywhere.
+    """
+    frame = field.frame
+    ku, kv = 1.0 / frame[2], 1.0 / frame[3]
+    px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
+    total = mu = mv = gross = 0.0
+    for s in range(n):
+        m, mx, my = integrate_edge(
+            field.sums, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
+        )
+        total += m
+        gross += abs(m)
+        mu += mx
+        mv += my
+    if total <= _ROUNDING * gross:
+        return 0.0, 0.0, 0.0
+    size = frame[2] * frame[3]
+    return total * size, mu * size * frame[2], mv * size * frame[3]
+
+
+@inline
+def free_share(out: F8, n: int, du: float, dv: float, margin: float) -> float:
+    """Return the share of the move (du, dv) that stays clear of the first n segments.
+
+    1 if the straight way ends well inside; else half of the way to the first of them met; 0 if
+    even that comes nearer to it than `margin`.
+    """
+    share = 1.0
+    for s in range(n):
+        au, av = out[s, 0], out[s, 1]
+        eu, ev = out[s, 2] - au, out[s, 3] - av
+        length = math.sqrt(eu * eu + ev * ev)
+        if length == 0.0:
+            continue
+        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
+        after = before + (eu * dv - ev * du) / length
+        if after >= margin or after >= before:
+            continue
+        t = max((before - margin) / (before - after), 0.0)
+        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
+        if -margin <= along <= length + margin:
+            share = min(share, 0.5 * t)
+    return share
+
+
+@inner
+def share_before_walls(edge: F8, near: I4, n_near: int, spot: Spot, du: float, dv: float) -> float:
+    """Return the share of the move (du, dv) that crosses none of the edges listed to the outside.
+
+    1 if it crosses none; else half of the way to the first.
+    """
+    share = 1.0
+    for s in range(n_near):
+        e = near[s]
+        au, av = edge[e, 0] - spot.x, edge[e, 1] - spot.y
+        eu, ev = edge[e, 2] - edge[e, 0], edge[e, 3] - edge[e, 1]
+        before = ev * au - eu * av  # left is positive
+        after = before + eu * dv - ev * du
+        if before < 0.0 or after >= 0.0:
+            continue
+        t = before / (before - after)
+        along = eu * (t * du - au) + ev * (t * dv - av)
+        if 0.0 <= along <= eu * eu + ev * ev:
+            share = min(share, 0.5 * t)
+    return share

@@ -1,0 +1,151 @@
+"""Dots that lie too close to one another for how close their neighbours lie."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.machine.jit import inline, kernel
+
+Array = NDArray[Any]
+
+_NEIGHBOURS = 7
+
+
+@inline
+def _look(
+    xy: Array, i: int, cell_start: Array, frame: Array, distance2: Array, nearest: int
+) -> int:
+    """Fill `distance2` with the squared distances to the nearest dots; return the nearest one."""
+    side = frame[2]
+    nx = int(frame[3])
+    ny = int(frame[4])
+    x = xy[i, 0]
+    y = xy[i, 1]
+    ix = min(max(int(x / side), 0), nx - 1)
+    iy = min(max(int(y / side), 0), ny - 1)
+    last = len(distance2) - 1
+    distance2[:] = np.inf
+    ring = 0
+    while ring <= max(nx, ny):
+        seen = max(ring - 1.0, 0.0) * side  # a dot in this ring is at least so far
+        if seen * seen > distance2[last]:
+            break
+        for row in range(max(iy - ring, 0), min(iy + ring, ny - 1) + 1):
+            whole = row == iy - ring or row == iy + ring
+            step = 1 if whole else max(2 * ring, 1)
+            for col in range(ix - ring, ix + ring + 1, step):
+                if col < 0 or col >= nx:
+                    continue
+                k = row * nx + col
+                for j in range(cell_start[k], cell_start[k + 1]):
+                    d2 = (xy[j, 0] - x) ** 2 + (xy[j, 1] - y) ** 2
+                    if d2 >= distance2[last] or j == i:
+                        continue
+                    at = last
+                    while at > 0 and distance2[at - 1] > d2:
+                        distance2[at] = distance2[at - 1]
+                        at -= 1
+                    distance2[at] = d2
+                    if at == 0:
+                        nearest = j
+        ring += 1
+    return nearest
+
+
+@kernel
+def find_close(
+    start: int,
+    stop: int,
+    xy: Array,
+    cell_start: Array,
+    frame: Array,
+    share: float,
+    enough: Array,
+    awake: Array,
+    nearest: Array,
+    lack: Array,
+) -> None:
+    """Find each dot's nearest, and how far that is short of a share of the way to the seventh.
+
+    Or of `enough` (n,), where that is less: on a thin line the seventh is far away.
+
+    Parameters
+    ----------
+    xy : (n, 2) float64
+        Sorted by grid cell; `cell_start` and `frame` as for `cell_ink.build_cells`.
+    share : float
+    awake : (n,) bool
+        Only these are looked at; of the others `lack` is set to 0 and `nearest` is left.
+    nearest : (n,) int32
+    lack : (n,) float64
+        0 for a dot that is far enough, or has fewer neighbours than seven.
+    """
+    distance2 = np.empty(_NEIGHBOURS)
+    for i in range(start, stop):
+        if not awake[i]:
+            lack[i] = 0.0
+            continue
+        j = _look(xy, i, cell_start, frame, distance2, -1)
+        nearest[i] = j
+        lack[i] = 0.0
+        seventh2 = distance2[_NEIGHBOURS - 1]
+        if seventh2 < np.inf:
+            wanted = min(share * math.sqrt(seventh2), enough[i])
+            lack[i] = max(wanted - math.sqrt(distance2[0]), 0.0)
+
+
+@kernel
+def push_apart(
+    xy: Array,
+    nearest: Array,
+    lack: Array,
+    darkness: Array,
+    rim: Array,
+    moves: Array,
+    awake: Array,
+) -> int:
+    """Move each dot that is too close, and its nearest, half of what lacks; return how many.
+
+    A dot nearer to the page's edge than `rim` (n,) only slides along it, and none moves onto
+    white. `moves` (n, 2) is scratch; `awake` gets the dots that moved.
+    """
+    h, w = darkness.shape
+    n = 0
+    moves[:] = 0.0
+    for i in range(len(xy)):
+        if lack[i] == 0.0:
+            continue
+        n += 1
+        j = nearest[i]
+        dx = xy[i, 0] - xy[j, 0]
+        dy = xy[i, 1] - xy[j, 1]
+        d = math.hypot(dx, dy)
+        if d == 0.0:
+            dx, d = 1.0 if i < j else -1.0, 1.0
+        half = 0.5 * lack[i] / d
+        if nearest[j] == i and lack[j] > 0.0:
+            half *= 0.5  # the other one does as much
+        dx *= half
+        dy *= half
+        moves[i, 0] += dx
+        moves[i, 1] += dy
+        moves[j, 0] -= dx
+        moves[j, 1] -= dy
+    for i in range(len(xy)):
+        awake[i] = moves[i, 0] != 0.0 or moves[i, 1] != 0.0
+        if not awake[i]:
+            continue
+        x = xy[i, 0]
+        y = xy[i, 1]
+        if rim[i] < x < w - rim[i]:
+            x = min(max(x + moves[i, 0], 1e-9 * w), (1.0 - 1e-9) * w)
+        if rim[i] < y < h - rim[i]:
+            y = min(max(y + moves[i, 1], 1e-9 * h), (1.0 - 1e-9) * h)
+        if darkness[int(y), int(x)] > 0.0:
+            xy[i, 0] = x
+            xy[i, 1] = y
+    return n

@@ -1,0 +1,137 @@
+"""Cells from the neighbours of the step before, verified instead of searched.
+
+The star of a dot is the counter-clockwise list of dots its cell borders on. A cell cut by any dots
+at all contains the true cell; so if all cells fit together, corner to corner, they are the true
+ones. `verify_stars` checks that each star, at the new positions, still bounds a convex cell whose
+sides all run forward (each is then locally Delaunay). Where one fails the cell is computed anew,
+and where that changes a star, `check_stars` tells whether its neighbours agree with it. Once
+all agree, every cell is exact. This is the Delaunay lemma: a triangulation that is locally
+Delaunay everywhere is Delaunay.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field
+from stippler.kernels.cells.relaxation import INNER
+from stippler.kernels.cells.tables import F8, I4, U1, Dots, Field, Grid, Moves, Stars
+from stippler.kernels.machine.jit import ZERO, inline, inner, kernel
+from stippler.kernels.machine.simd import (
+    BUFFER,
+    LANES,
+    corners_of_star,
+    moments_of,
+    outside_box,
+    put,
+    reach2_of,
+    stack_doubles,
+)
+
+
+@kernel
+def verify_stars(
+    start: int,
+    stop: int,
+    dots: Dots,
+    grid: Grid,
+    field: Field,
+    over: float,
+    moves: Moves,
+    stars: Stars,
+    todo: U1,
+) -> None:
+    """Move the dots of cells bounded by dots alone whose stars still hold; set `todo` for others.
+
+    ``moves.kind`` and ``moves.free`` are those of the step before.
+    """
+    U, V = stack_doubles(BUFFER), stack_doubles(BUFFER)
+    for k in range(BUFFER):
+        put(U, k, 0.0)
+        put(V, k, 0.0)
+    out = np.empty((LANES, 4))
+    for i in range(start, stop):
+        m = ZERO + stars.n[i]
+        todo[i] = 1
+        if moves.kind[i] != INNER or m < 3 or m + 2 > LANES:
+            continue
+        x, y = dots.x[i], dots.y[i]
+        c = dots.compartment[i]
+        x0, y0, x1, y1 = grid.real[c, 4], grid.real[c, 5], grid.real[c, 6], grid.real[c, 7]
+        bad = corners_of_star(dots.x, dots.y, stars.around, i, m, x, y, U, V)
+        beyond = outside_box(U, V, x0 - x, y0 - y, x1 - x, y1 - y)
+        if (bad | beyond) & ((1 << m) - 1):
+            continue
+        if moves.free[i] * abs(moves.free[i]) <= reach2_of(U, V, m):
+            continue
+        todo[i] = 0
+        moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
+        if dots.fixed[i]:
+            continue
+        du, dv = _way_to_centroid(U, V, m, i, x, y, dots, field, over, stars, out)
+        moves.x[i] = min(max(x + du, x0), x1)
+        moves.y[i] = min(max(y + dv, y0), y1)
+        moves.gone[i] = math.sqrt(du * du + dv * dv)
+        moves.free[i] -= moves.gone[i]
+
+
+@inline
+def _way_to_centroid(
+    U: Any, V: Any, m: int, i: int, x: float, y: float, dots: Dots, field: Field, over: float,
+    stars: Stars, out: F8,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+    area, du, dv = moments_of(U, V, m)
+    area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+    if len(field.sums):
+        outline_of_lanes(U, V, m, out)
+        area, du, dv = sum_field(out, m, x, y, field)
+    if not area > 0.0:
+        return 0.0, 0.0
+    du, dv = du / area, dv / area
+    if len(field.sums):  # next to nothing can have its centroid anywhere, by rounding
+        share = free_share(out, m, du, dv, 0.0)
+        du, dv = share * du, share * dv
+    if over != 1.0:
+        for k in range(m):
+            a, b = dots.x[stars.around[i, k]] - x, dots.y[stars.around[i, k]] - y
+            if over * (a * du + b * dv) > 0.5 * (a * a + b * b):
+                return du, dv
+        return over * du, over * dv
+    return du, dv
+
+
+@inner
+def _has_pair(star: I4, n_star: U1, i: int, a: int, b: int) -> bool:
+    """Whether dot i lists a and, right after it, b."""
+    m = n_star[i]
+    for k in range(m):
+        if star[i, k] == a:
+            return bool(star[i, k + 1 if k + 1 < m else 0] == b)
+    return False
+
+
+@kernel
+def check_stars(start: int, stop: int, which: I4, star: I4, n_star: U1, todo: U1) -> None:
+    """Set `todo` for the dots of a list one of whose corners is not confirmed by both others."""
+    for w in range(start, stop):
+        i = which[w]
+        m = n_star[i]
+        todo[i] = 0
+        for k in range(m):
+            a, b = star[i, k], star[i, k + 1 if k + 1 < m else 0]
+            if not (_has_pair(star, n_star, a, b, i) and _has_pair(star, n_star, b, i, a)):
+                todo[i] = 1
+                break
+
+
+@kernel
+def renumber_stars(start: int, stop: int, order: I4, new_row: I4, old_star: I4, star: I4) -> None:
+    """Carry stars over to a new order of the dots: row i is the old row ``order[i]``."""
+    for i in range(start, stop):
+        for k in range(LANES):
+            j = old_star[order[i], k]
+            star[i, k] = new_row[j] if j >= 0 else j

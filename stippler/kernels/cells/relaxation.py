@@ -1,0 +1,296 @@
+"""One relaxation step over a list of dots: exact cells, their centroids, safe moves.
+
+Dots come sorted by compartment and grid cell (see `grid`), so a row of grid cells is one run of
+memory. A dot's cell is cut by the dots of growing rings of grid cells until no dot further out
+can reach it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from stippler.kernels.cells.border import (
+    border_distance,
+    free_share,
+    gather_edges,
+    outline_of_cell,
+    outline_of_lanes,
+    outline_within,
+    share_before_walls,
+    sum_area,
+    sum_field,
+)
+from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
+from stippler.kernels.cells.grid import seen_distance, spot_of
+from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
+from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
+from stippler.kernels.cells.tables import (
+    F8,
+    I4,
+    Border,
+    Dots,
+    Field,
+    Grid,
+    Moves,
+    Pads,
+    Spot,
+    Stars,
+)
+from stippler.kernels.cells.voronoi import (
+    OVERFLOW,
+    reach2_of_cell,
+    start_cell,
+    start_lanes,
+    unpack_lanes,
+)
+from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, merged
+from stippler.kernels.machine.simd import (
+    BUFFER,
+    get,
+    moments_of,
+    put,
+    reach2_of,
+    stack_doubles,
+    stack_ints,
+    store_lanes,
+)
+
+INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
+"""What a cell is: bounded by dots alone; by a border as well; not computed."""
+
+
+def relax_dots(
+    start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
+    border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
+) -> None:  # fmt: skip
+    """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
+
+    Parameters
+    ----------
+    which, is_all
+        Rows of the dots' arrays; if `is_all` the rows are start..stop themselves.
+    corner_cap
+        Room for the corners of a cell.
+    over
+        Over-relaxation, 1 for plain Lloyd.
+    moves, stars
+        Results.
+    cells
+        Result, by row, unless empty: mass, centroid relative to the dot, second moment of area
+        (0 with a density).
+    """
+    room = border.most_edges + 1
+    pads = Pads(
+        np.empty((7, corner_cap)),
+        np.empty((7, corner_cap + 4)),
+        np.empty(room, np.int32),
+        np.full(len(border.edge) + 1, -1, np.int64),
+        np.zeros(1, np.int64),
+        np.empty((room, 5)),
+        np.empty((room, 4)),
+        np.empty((2 * room + 3 * corner_cap + 8, 4)),
+    )
+    _relax(start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, pads)
+
+
+@bare_kernel
+def _relax(
+    start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
+    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, pads: Pads,
+) -> None:  # fmt: skip
+    U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
+    for k in range(BUFFER):
+        put(U, k, 0.0)
+        put(V, k, 0.0)
+        put(N, k, np.int32(0))
+    for w in range(start, stop):
+        i = w if is_all else which[w]
+        x, y = dots.x[i], dots.y[i]
+        is_fixed = len(dots.fixed) > 0 and dots.fixed[i]
+        moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
+        if is_fixed and len(stars.around) == 0:
+            continue
+        c = dots.compartment[i]
+        spot = spot_of(x, y, c, grid)
+        free = math.inf
+        if grid.whole[c, 3] == 1:
+            cell = spot.first_cell + spot.iy * spot.nx + spot.ix
+            free = max(border.clear[cell] - 1, 0) * spot.h
+        m, is_packed, n_border, n, reach2, free, n_near = _cell_of_dot(
+            U, V, N, dots, grid, border, spot, free, pads
+        )
+        moves.free[i] = free
+        if m == OVERFLOW:
+            moves.kind[i] = TOO_MANY_CORNERS
+            continue
+        is_rim = n > 0 or not is_packed
+        for k in range(m):
+            is_rim = is_rim or get(N, k) < 0
+        moves.kind[i] = RIM if is_rim else INNER
+        if len(stars.around):
+            _keep_star(N, m if is_packed else ZERO, i, stars)
+        if is_fixed:
+            continue
+        du, dv = _way_to_centroid(U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads)
+        if n_border:
+            margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
+            share = free_share(pads.out, n_border, du, dv, margin)
+            du, dv = share * du, share * dv
+        if n:  # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
+            share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
+            du, dv = share * du, share * dv
+        moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
+        moves.y[i] = min(max(y + dv, grid.real[c, 5]), grid.real[c, 7])
+        moves.gone[i] = math.sqrt(du * du + dv * dv)
+        moves.free[i] = free - moves.gone[i]
+
+
+@merged
+def _cell_of_dot(
+    U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
+    pads: Pads,
+) -> tuple[int, bool, int, int, float, float, int]:  # fmt: skip
+    """Compute a dot's cell; `free` is a distance within which no border edge lies.
+
+    Returns
+    -------
+    m, is_packed
+        Its corners, in lanes or, if not `is_packed`, in ``pads.cell``; or `OVERFLOW`.
+    n_border, n
+        Segments in ``pads.out`` if the border cuts the cell, see `outline_piece`, else 0.
+    reach2, free
+        Squared distance of the farthest corner; what is now known to be free of border edges.
+    n_near
+        Border edges in ``pads.near``, of all that were looked at for the outline.
+    """
+    crowd = -ZERO - 1
+    ring = ZERO + 1
+    if len(grid.tree_of_cell) > 0:
+        own = spot.first_cell + spot.iy * spot.nx + spot.ix
+        if grid.tree_of_cell[own] >= 0:
+            crowd, ring = ZERO + own, ZERO
+    is_packed = True
+    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+    while True:
+        n_border = n = n_near = ZERO
+        reach2, is_swept = 0.0, False
+        if is_packed:
+            is_swept = ring == SWEEP_FROM and free == math.inf
+            if is_swept:
+                m = sweep_rows(U, V, N, m, dots, grid, spot)
+            elif ring == 0:
+                m = cut_lanes_by_crowd(U, V, N, m, dots, grid, spot.x, spot.y, crowd)
+            else:
+                m = cut_lanes_by_ring(U, V, N, m, dots, grid, spot, ring, crowd)
+            if m == OVERFLOW:
+                is_packed = False
+                m = start_cell(pads.cell, spot.x0, spot.y0, spot.x1, spot.y1)
+                ring = ZERO + 1
+                continue
+            reach2 = reach2_of(U, V, m)
+        else:
+            m = cut_cell_by_ring(pads.cell, m, dots, grid, spot, ring)
+            if m == OVERFLOW:
+                break
+            reach2 = reach2_of_cell(pads.cell, m)
+        far = seen_distance(spot, ring, grid.slack)
+        is_last = is_swept or 4.0 * reach2 <= far * far
+        if free * free <= reach2 and (is_last or ring > 1):
+            stamp = pads.stamp[0]
+            pads.stamp[0] = stamp + 2
+            n_near = gather_edges(border, spot, ring, pads, stamp)
+            seen_free = seen_distance(spot, ring, 0.0)
+            free = min(seen_free, border_distance(border.edge, pads.near, n_near, spot.x, spot.y))
+            if free * free <= reach2:
+                # the cell may lean out of the compartment: only its piece counts
+                if is_packed:
+                    unpack_lanes(U, V, N, m, dots.x, dots.y, spot, pads.cell)
+                n_border, n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
+                is_last = is_last or 4.0 * r2 <= far * far
+        if is_last:
+            break
+        ring += 1
+    return m, is_packed, n_border, n, reach2, free, n_near
+
+
+@merged
+def _way_to_centroid(
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot,
+    over: float, i: int, cells: F8, pads: Pads,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+    second, is_whole = 0.0, n == 0
+    if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
+        area, du, dv = moments_of(U, V, m)
+        area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+    else:
+        if n == 0:
+            n = m
+            if is_packed:
+                outline_of_lanes(U, V, m, pads.out)
+            else:
+                outline_of_cell(pads.cell, m, pads.out)
+        if len(field.sums):
+            area, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
+        else:
+            area, du, dv, second = sum_area(pads.out, n)
+    if area > 0.0:
+        du, dv = du / area, dv / area
+    else:
+        area = du = dv = 0.0
+    if len(cells):
+        cells[i, 0], cells[i, 1], cells[i, 2], cells[i, 3] = area, du, dv, second
+    if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
+        share = free_share(pads.out, n, du, dv, 0.0)
+        du, dv = share * du, share * dv
+    if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
+        du, dv = over * du, over * dv
+    return du, dv
+
+
+@inline
+def _is_in_cell(N: Any, m: int, dots: Dots, spot: Spot, over: float, du: float, dv: float) -> bool:
+    """Whether a place is nearer to the dot than to the dots beyond its sides."""
+    for k in range(m):
+        j = get(N, k)
+        if j >= 0:
+            a, b = dots.x[j] - spot.x, dots.y[j] - spot.y
+            if a * over * du + b * over * dv > 0.5 * (a * a + b * b):
+                return False
+    return True
+
+
+@inline
+def _keep_star(N: Any, m: int, i: int, stars: Stars) -> None:
+    """Note a dot's neighbours; mark old and new ones as suspect if they have changed."""
+    if len(stars.suspect) and not _is_same_star(N, m, i, stars):
+        for k in range(stars.n[i]):
+            if stars.around[i, k] >= 0:
+                stars.suspect[stars.around[i, k]] = 1
+        for k in range(m):
+            if get(N, k) >= 0:
+                stars.suspect[get(N, k)] = 1
+    stars.n[i] = m
+    if m > 0:
+        store_lanes(N, stars.around, i)
+
+
+@inline
+def _is_same_star(N: Any, m: int, i: int, stars: Stars) -> bool:
+    """Whether a dot's ring of neighbours is, but for where it begins, the one noted."""
+    around = stars.around
+    if stars.n[i] != m or m == 0:
+        return bool(stars.n[i] == m)
+    turn = ZERO
+    while turn < m and around[i, turn] != get(N, 0):
+        turn += 1
+    if turn == m:
+        return False
+    for k in range(m):
+        w = k + turn if k + turn < m else k + turn - m
+        if around[i, w] != get(N, k):
+            return False
+    return True

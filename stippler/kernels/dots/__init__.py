@@ -1,0 +1,1 @@
+"""Grids that dots are found in, and bringing results back to them."""

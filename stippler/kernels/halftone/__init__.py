@@ -1,0 +1,1 @@
+"""Pulse-density modulation: regions, and the order they grow in."""

@@ -1,0 +1,63 @@
+"""Where the machine code of this version's kernels is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Iterable
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+from platformdirs import user_cache_path
+
+_KERNELS = Path(__file__).parent.parent
+_IMPORT = re.compile(r"^from stippler\.kernels\.([\w.]+) import", re.MULTILINE)
+
+
+def cache_root() -> Path:
+    """Return the folder above all compiled kernels; ``STIPPLER_CACHE_DIR`` moves it."""
+    base = os.environ.get("STIPPLER_CACHE_DIR")
+    return Path(base) if base else user_cache_path("stippler")
+
+
+def module_folder(source: str) -> Path:
+    """Return the folder for the kernels of one source file; it may not exist yet.
+
+    Numba keys its cache by the file a kernel stands in and does not see changes in functions
+    imported from other files, so the folder's name carries a digest of them all.
+    """
+    path = Path(source)
+    return cache_root() / f"{path.stem}-{_digest(_with_imports(path))}"
+
+
+def all_digest() -> str:
+    """Return a digest of all kernel sources."""
+    return _digest(_KERNELS.rglob("*.py"))
+
+
+def _with_imports(path: Path) -> set[Path]:
+    """Return a file and all kernel files it imports, directly or not."""
+    found, todo = set(), [path]
+    while todo:
+        source = todo.pop()
+        if source not in found:
+            found.add(source)
+            for name in _IMPORT.findall(_text(source)):
+                module = _KERNELS / name.replace(".", "/")
+                todo += module.glob("*.py") if module.is_dir() else [module.with_suffix(".py")]
+    return found
+
+
+def _digest(sources: Iterable[Path]) -> str:
+    digest = hashlib.sha256(f"numba {metadata.version('numba')}".encode())
+    for source in sorted(sources):
+        # numba itself compares a source's time, so what differs in time alone is another too
+        digest.update(f"{source} {source.stat().st_mtime_ns} {_text(source)}".encode())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def _text(source: Path) -> str:
+    return source.read_text(encoding="utf-8")

@@ -1,0 +1,1 @@
+"""Outlines of dots: on the screen, and as text."""

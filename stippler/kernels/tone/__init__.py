@@ -1,0 +1,1 @@
+"""Ink: what cells ask for, what dots lay down, and their union."""

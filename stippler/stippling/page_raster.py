@@ -1,0 +1,215 @@
+"""The raster that dots are laid out on: the page with a bleed around it.
+
+Printers let a picture run over the edge of the page and trim it. So do dots: relaxed on the page
+alone they would line up along its edge, half a spacing inside it, and leave a light rim. The
+bleed repeats the picture's border mirrored; dots in it are trimmed, those that still reach into
+the page are drawn back to its edge. Lengths are pixels of the raster's own resolution.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.reference import Reference
+from stippler.errors import ParameterError
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.pixel_owner import onto_ink, sample
+from stippler.stippling.halftone import CELLS_PER_DOT
+from stippler.stippling.plan import MAX_DOTS
+from stippler.stippling.tone import DotRule, rule_for
+
+_BLEED = 3.0  # mean spacings
+_MIN_DOTS = 500  # below this a bleed is not worth it
+_PIXELS_PER_DOT = 60  # blocks of a reference that is finer are averaged
+_MIN_PIXELS = 2_500_000
+_DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
+_MOST_CELLS = 400_000_000  # of a halftone, whose cells are as fine as its densest part asks for
+_INSIDE = 1e-9  # of the page; no dot lies on its edge itself
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PageRaster:
+    """A reference at the resolution its dots need, its bleed, and the rule for the dots.
+
+    Attributes
+    ----------
+    darkness : (h, w) float32, read-only
+        Of the page.
+    bleed : int
+        Pixels around the page.
+    rule : DotRule
+        In pixels.
+    pixel_mm : float
+    size_mm : (float, float)
+        Of the page.
+    """
+
+    darkness: NDArray[np.float32]
+    bleed: int
+    rule: DotRule
+    pixel_mm: float
+    size_mm: tuple[float, float]
+
+    @classmethod
+    def of(
+        cls,
+        reference: Reference,
+        n_dots: int | None,
+        size_range_mm: tuple[float, float] | None,
+        bleeds: bool,
+        faintest: float | None = None,
+    ) -> PageRaster:
+        """Prepare a reference for so many dots or dots of such sizes; `faintest` as in a rule."""
+        width, height = reference.width_mm, reference.height_mm
+        guess = n_dots or _number_for(reference, size_range_mm)
+        if guess > MAX_DOTS:
+            raise ParameterError(
+                f"about {guess:,} dots of this size would be needed", "size range",
+                f"allow larger ones; {MAX_DOTS:,} can be drawn",
+            )  # fmt: skip
+        darkness, scale = _at_resolution(reference.darkness, guess)
+        pixel_mm = reference.pixel_mm * scale
+        size_px = None
+        if size_range_mm is not None:
+            size_px = (size_range_mm[0] / pixel_mm, size_range_mm[1] / pixel_mm)
+        bleed = 0
+        if bleeds and guess >= _MIN_DOTS and _border(darkness).any():
+            bleed = math.ceil(_BLEED * math.sqrt(darkness.size / guess))
+        border = _border(darkness) if bleed else darkness[0, :0]
+        rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
+        share = _share_that_fits(rule, darkness, bleed, guess)
+        if share < 1.0 and size_px is None:
+            n_dots = max(int(share * guess), 1)
+            rule = rule_for(darkness, n_dots, None, border, faintest=faintest)
+        elif share < 1.0:
+            rule = replace(rule, thin=share * rule.thin)
+        return cls(darkness, bleed, rule, pixel_mm, (width, height))
+
+    def density(self) -> NDArray[np.float32]:
+        """Dots per square pixel, bleed included; white stays exactly 0."""
+        levels = np.linspace(0.0, 1.0, 4097)
+        table = self.rule.density(levels)
+        return self.with_bleed(np.interp(self.darkness, levels, table).astype(np.float32))
+
+    def with_bleed(self, field: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Repeat a field of the page in the bleed, mirrored."""
+        return np.pad(field, self.bleed, mode="symmetric") if self.bleed else field
+
+    def outline_mm(self) -> NDArray[np.float64]:
+        """Corners of the raster, bleed included; the page's top left is the origin."""
+        b = self.bleed * self.pixel_mm
+        w, h = self.size_mm
+        return np.array([(-b, -b), (w + b, -b), (w + b, h + b), (-b, h + b)])
+
+    def trim(self, points: NDArray[np.float64], n_wanted: int | None) -> NDArray[np.float64]:
+        """Return the dots of the page: those in it, and those in the bleed that reach into it.
+
+        The latter go to the page's edge; how far they have to reach is chosen so that there are
+        `n_wanted` dots, as nearly as possible.
+        """
+        size = np.array(self.size_mm) / self.pixel_mm
+        at = np.clip(points, _INSIDE * size, (1.0 - _INSIDE) * size)
+        if not self.bleed:
+            return at
+        out = np.hypot(points[:, 0] - at[:, 0], points[:, 1] - at[:, 1])
+        beyond = np.flatnonzero(out > 0.0)
+        depth = out[beyond] / self.radii(at[beyond])
+        rank = np.argsort(depth, kind="stable")
+        n_kept = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH))
+        if n_wanted is not None:
+            room = n_wanted - (len(points) - len(beyond))
+            n_kept = min(max(room, n_kept // 2), int(np.searchsorted(depth[rank], 1.2)))
+        drop = np.zeros(len(points), bool)
+        drop[beyond[rank[n_kept:]]] = True
+        kept: NDArray[np.float64] = at[~drop]
+        return kept
+
+    def radii(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the radius that the rule gives each dot of the page."""
+        return self.rule.radius(self._under(points))
+
+    def wanted_at(
+        self, points: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the radius and the density that the rule gives where each dot of the page lies."""
+        values = self._under(points)
+        return self.rule.radius(values), self.rule.density(values)
+
+    def _under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
+        values = np.empty(len(points), np.float32)
+        points = np.ascontiguousarray(points)
+        parallel_for(sample, len(points), points, self.darkness, values)
+        return values
+
+    def onto_ink(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Move dots off pixels that are white, to the nearest that is not."""
+        points = np.array(points)
+        moved = np.empty(len(points), np.uint8)
+        reach = max(self.darkness.shape)
+        parallel_for(onto_ink, len(points), points, self.darkness, reach, moved)
+        kept: NDArray[np.float64] = points[moved != 2]
+        return kept
+
+    def on_page(
+        self, points: NDArray[np.float64], radii: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+        """Return fresh read-only arrays in mm."""
+        position = np.minimum(points * self.pixel_mm, self.size_mm)
+        radius = (radii * self.pixel_mm).astype(np.float32)
+        position.flags.writeable = False
+        radius.flags.writeable = False
+        return position, radius
+
+
+def _share_that_fits(
+    rule: DotRule, darkness: NDArray[np.float32], bleed: int, n_dots: int
+) -> float:
+    """Return the share of the dots that can be drawn, where little of the page holds them all."""
+    h, w = darkness.shape
+    densest = float(rule.density(np.linspace(0.0, float(darkness.max()), 257)).max())
+    n_cells = CELLS_PER_DOT * densest * (h + 2 * bleed) * (w + 2 * bleed)
+    return float(max(_MOST_CELLS, 4 * CELLS_PER_DOT * n_dots) / max(n_cells, 1.0))
+
+
+def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the pixels along the edge of the page; corners count twice."""
+    return np.concatenate((darkness[0], darkness[-1], darkness[:, 0], darkness[:, -1]))
+
+
+def _number_for(reference: Reference, size_range_mm: tuple[float, float] | None) -> int:
+    """Return how many dots of these sizes a reference takes, about."""
+    if size_range_mm is None:
+        return _MIN_DOTS
+    mean_area = math.pi * (0.5 * (size_range_mm[0] + size_range_mm[1])) ** 2
+    ink = float(reference.darkness.mean(dtype=np.float64))
+    return max(1, int(ink * reference.width_mm * reference.height_mm / mean_area))
+
+
+def _at_resolution(darkness: NDArray[np.float32], n_dots: int) -> tuple[NDArray[np.float32], float]:
+    """Average blocks of a picture finer than its dots can show; divide pixels larger than dots.
+
+    Returns the field and the side of its pixels in those of the picture.
+    """
+    h, w = darkness.shape
+    per_pixel = n_dots / darkness.size
+    if per_pixel > _DOTS_PER_PIXEL:
+        k = math.ceil(math.sqrt(per_pixel / _DOTS_PER_PIXEL))
+        return _frozen(np.repeat(np.repeat(darkness, k, 0), k, 1)), 1.0 / k
+    k = int(math.sqrt(darkness.size / max(_MIN_PIXELS, _PIXELS_PER_DOT * n_dots)))
+    if k < 2:
+        return darkness, 1.0
+    rows, columns = np.arange(0, h, k), np.arange(0, w, k)
+    sums = np.add.reduceat(darkness, rows, axis=0, dtype=np.float32)
+    sums = np.add.reduceat(sums, columns, axis=1)
+    sums /= np.diff(rows, append=h).astype(np.float32)[:, None]
+    sums /= np.diff(columns, append=w).astype(np.float32)
+    return _frozen(np.minimum(sums, np.float32(1.0))), float(k)
+
+
+def _frozen(field: NDArray[np.float32]) -> NDArray[np.float32]:
+    field.flags.writeable = False  # as a reference's own field: kernels compile for one kind
+    return field

@@ -1,0 +1,111 @@
+"""The last touches to relaxed dots, before their sizes are solved."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.kernels.cells.close_pairs import find_close, push_apart
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.edge_ink import even_rim as even_along
+from stippler.stippling.page_raster import PageRaster
+from stippler.stippling.radii import solve_radii, sorted_by_place
+
+_APART = 0.5  # of the distance to the seventh neighbour
+_ENOUGH = 1.0  # of the spacing that the density asks for
+_ROUNDS = 5
+_BAND = 3.0  # mean spacings; dots that moves across the edge may come close to
+_CELLS = 6.0  # mean spacings; dots whose cells bound those of dots at the edge
+_NEAR = 1.6  # radii; dots so near the edge may come to touch it
+
+
+def part_close(
+    points: NDArray[np.float64], raster: PageRaster, awake: NDArray[np.bool_] | None = None
+) -> NDArray[np.float64]:
+    """Push dots apart that lie closer than half as far as their seventh neighbours.
+
+    Relaxed dots keep a few such pairs, one in a hundred, where rows of dots end. Those at the
+    page's edge slide along it.
+
+    Parameters
+    ----------
+    points : (n, 2) float64, pixels
+        Not modified.
+    awake : (n,) bool, optional
+        Look only at these and their nearest; None: at all.
+    """
+    n = len(points)
+    points = np.array(points)
+    if n < 2:
+        return points
+    order, cell_start, frame = sorted_by_place(points, raster.darkness, n)
+    xy = points[order]  # few dots move, and not far: the grid of the first round serves all
+    radii, density = raster.wanted_at(xy)
+    enough = _ENOUGH / np.sqrt(np.maximum(density, 1e-12))
+    rim = radii if raster.bleed else np.zeros(n)
+    up = np.ones(n, bool) if awake is None else awake[order]
+    nearest, lack, moves = np.zeros(n, np.int32), np.empty(n), np.empty((n, 2))
+    for _ in range(_ROUNDS):
+        parallel_for(find_close, n, xy, cell_start, frame, _APART, enough, up, nearest, lack)
+        if not push_apart(xy, nearest, lack, raster.darkness, rim, moves, up):
+            break
+    points[order] = xy
+    return points
+
+
+def at_edge(points: NDArray[np.float64], raster: PageRaster) -> NDArray[np.bool_]:
+    """Tell which dots have to do with the page's edge."""
+    return _inwards(points, raster) < _BAND * _spacing(points, raster)
+
+
+def even_rim(points: NDArray[np.float64], raster: PageRaster, give: float) -> NDArray[np.float64]:
+    """Move dots at the page's edge across it until the ink along the edge meets the tone.
+
+    Without this the edge cuts dots as chance will have it, and the rim looks frayed: here too
+    dark, there too light, over a few dots.
+
+    Parameters
+    ----------
+    points : (n, 2) float64, pixels
+        Not modified.
+    give : float
+        How far a dot may move, in its radius.
+    """
+    points = np.array(points)
+    darkness = raster.darkness
+    band = np.flatnonzero(_inwards(points, raster) < _CELLS * _spacing(points, raster))
+    if not len(band):
+        return points
+    *_, (_, radii) = solve_radii(points[band], darkness, raster.rule, len(points))
+    line = min(0.5, 0.5 * raster.rule.radius_min)
+    for axis, far, edge in (
+        (1, False, darkness[0]),
+        (1, True, darkness[-1]),
+        (0, False, darkness[:, 0]),
+        (0, True, darkness[:, -1]),
+    ):
+        size = darkness.shape[1 - axis]
+        inwards = points[band, axis]
+        if far:
+            inwards = size - inwards
+        near = np.flatnonzero(inwards < _NEAR * radii)
+        near = near[np.argsort(points[band[near], 1 - axis], kind="stable")]
+        which, inwards = band[near], inwards[near]
+        asked = np.concatenate(([0.0], np.cumsum(edge, dtype=np.float64)))
+        even_along(points[which, 1 - axis], inwards, radii[near], asked, line, give)
+        inwards = np.maximum(inwards, 1e-9 * size)
+        points[which, axis] = size - inwards if far else inwards
+    return points
+
+
+def _inwards(points: NDArray[np.float64], raster: PageRaster) -> NDArray[np.float64]:
+    """Return how far dots lie from the nearest edge of the page."""
+    size = np.array(raster.darkness.shape[::-1], np.float64)
+    distance: NDArray[np.float64] = np.minimum(points, size - points).min(axis=1)
+    return distance
+
+
+def _spacing(points: NDArray[np.float64], raster: PageRaster) -> float:
+    return math.sqrt(raster.darkness.size / max(len(points), 1))

@@ -1,0 +1,371 @@
+"""The editor in its window: events in, panels and page out, frame by frame."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from imgui_bundle import imgui
+
+from stippler.drawing.pens import pen_named
+from stippler.drawing.preview import Preview
+from stippler.editor.events import (
+    CloseAsked,
+    Dropped,
+    Event,
+    KeyDown,
+    Moved,
+    Pressed,
+    Released,
+    Scrolled,
+)
+from stippler.editor.keymap import load_keys
+from stippler.editor.messages import ERROR, WARNING
+from stippler.editor.painting import Painting
+from stippler.editor.pointer import Pointer
+from stippler.editor.pointer_states import Idle
+from stippler.editor.rates import FrameRate
+from stippler.editor.schedule import Schedule
+from stippler.editor.session import Session
+from stippler.editor.shaping import Shaping
+from stippler.editor.view import BLANK, View
+from stippler.errors import StipplerError
+from stippler.ui.actions import commands_for
+from stippler.ui.canvas.canvas import Canvas
+from stippler.ui.canvas.lens import LensKey, place_lens
+from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
+from stippler.ui.canvas.pen_samples import PenSamples
+from stippler.ui.panels.brush import draw_brush
+from stippler.ui.panels.docks import Panels
+from stippler.ui.panels.dots import draw_dots
+from stippler.ui.panels.history import draw_history
+from stippler.ui.panels.layout import BRUSH, DRAWING, HISTORY, SHAPE, VIEW, Layout
+from stippler.ui.panels.menu import draw_menu
+from stippler.ui.panels.notice import draw_invitation, draw_notice
+from stippler.ui.panels.picture import draw_picture
+from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
+from stippler.ui.panels.progress import draw_work
+from stippler.ui.panels.reference import draw_reference
+from stippler.ui.panels.shape import draw_shape
+from stippler.ui.panels.status import Sight, draw_status
+from stippler.ui.panels.tools import draw_tools
+from stippler.ui.panels.view import draw_view
+from stippler.ui.popups.file_dialogs import has_native_dialogs
+from stippler.ui.popups.popups import Popups
+from stippler.ui.preferences import Preferences
+from stippler.ui.widgets import Rect, Widgets
+from stippler.ui.window.gui import Gui
+from stippler.ui.window.window import Window
+
+_CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
+_LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
+_CARET_S = 0.4  # a text field's caret blinks
+_MINIMISED_S = 0.25
+_ANSWER_S = 0.1  # how often a system dialog is looked at
+
+
+class Editor:
+    """Draws a session into a window and brings the window's input to it.
+
+    Attributes
+    ----------
+    widgets : Widgets
+        Of the last frame, with the places of its controls.
+    n_frames : int
+        How many frames have been drawn.
+    """
+
+    def __init__(
+        self,
+        window: Window,
+        session: Session,
+        kept: Preferences,
+        *,
+        native_dialogs: bool | None = None,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self._window, self._clock = window, clock
+        self.session, self._kept = session, kept
+        self.look = kept.look
+        self.look.begin()
+        self.view = View(BLANK, window.size_px)
+        self.pointer = Pointer(self.view)
+        native = has_native_dialogs() if native_dialogs is None else native_dialogs
+        self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
+        self.canvas = Canvas(window.ctx)
+        self._samples = PenSamples(window.ctx)
+        self.painting = Painting(session)
+        self.shaping = Shaping(session, self.painting)
+        self.popups = Popups(window, session, kept, use_native=native)
+        self._layout = Layout()
+        self.panels = Panels(
+            {
+                DRAWING: self._draw_drawing,
+                BRUSH: lambda: draw_brush(self.widgets, self.painting, self.commands),
+                SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
+                VIEW: self._draw_view,
+                HISTORY: self._draw_history,
+            },
+            kept.closed,
+        )
+        self.lens_key = LensKey(self.look)
+        self.commands = self.popups.commands = commands_for(self, session, window)
+        self._load_keys()
+        self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
+        self.n_frames = 0
+        self._schedule, self._rate = Schedule(), FrameRate()
+        self._ratio = 1.0
+        self._preview: Preview | None = None
+        self._last_s = clock()
+        self._size_px = window.size_px
+
+    # --- the loop's two halves --------------------------------------------------------------
+
+    def sleep_s(self) -> float:
+        """Return how long nothing needs to be drawn, if nothing happens."""
+        if 0 in self._window.size_px:  # minimised
+            return _MINIMISED_S
+        return self._schedule.sleep_s(self._clock())
+
+    @property
+    def idle(self) -> bool:
+        """Whether all that has happened so far has been drawn."""
+        return self._schedule.idle
+
+    def step(self) -> bool:
+        """Take what has happened; draw a frame if it is time for one, and say whether."""
+        began = self._clock()
+        events = self._window.take_events()
+        if events:
+            self._schedule.note_input(began)
+        if self.session.poll():
+            self._schedule.note_result()
+        if not self._schedule.due(began) or 0 in self._window.size_px:
+            return False
+        self._frame(events, began)
+        moving = self.view.moving or self.painting.toolbox.is_timed
+        self._schedule.note_frame(began, self._clock(), moving=moving)
+        self._plan_wakes()
+        self.n_frames += 1
+        return True
+
+    def close(self) -> None:
+        """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
+        self.painting.toolbox.save()
+        self._keep()
+        self.canvas.close()
+        self._samples.close()
+        self.gui.close()
+
+    # --- one frame --------------------------------------------------------------------------
+
+    def _frame(self, events: list[Event], now_s: float) -> None:
+        dt_s, self._last_s = min(now_s - self._last_s, 0.1), now_s
+        self._rate.tick(now_s)
+        self.gui.dress(self.look)
+        self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
+        failure = self.gui.frame(lambda: self._draw_ui(events, dt_s))
+        if failure is not None:
+            self._report(failure, "the window")
+        with self._window.frame() as screen:
+            try:
+                self.canvas.draw(
+                    self.session,
+                    self.painting.toolbox.selection,
+                    self.view.camera,
+                    self.look,
+                    self._preview,
+                )
+            except Exception as error:  # noqa: BLE001 - the editor lives on; the person is told
+                self._report(error, "the page")
+            screen.use()
+            screen.clear(*self.look.theme.desk, 1.0)
+            self.gui.draw()
+        self.lens_key.note_frame(self._window.now_s)
+        name, changed = self.session.name, "*" if self.session.unsaved else ""
+        self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
+        if self.popups.filing.note_opened():
+            self._keep()
+
+    def _draw_ui(self, events: list[Event], dt_s: float) -> None:
+        recent = self.popups.filing.recent
+        self._guarded("the menu", lambda: draw_menu(self.widgets, self.commands, recent))
+        area = self._layout.draw(self.gui.scale)
+        self._place(area)
+        for event in events:
+            self._take(event)
+        self.lens_key.let_pass()
+        self.painting.tick(self._window.now_s)
+        self.view.advance(dt_s)
+        self._preview = self._previewed()
+        self.canvas.show(area, self.view.size_px, self._preview, self.view.camera, self._ratio)
+        self._guarded("the brush's outline", lambda: self._draw_overlay(area))
+        self._guarded("the lens", lambda: self._draw_lens(area))
+        if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
+            imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
+        self._guarded("the tools", self._draw_tools)
+        self.panels.draw(self._guarded)
+        if not self.panels.is_in_front(SHAPE):
+            self.shaping.let_go()
+        if self.session.drawing is None and not self.session.busy:
+            draw_invitation(self.widgets, self.commands, recent(), area)
+        self._guarded("the status bar", self._draw_status)
+        self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
+        self.popups.draw(self.widgets, self._guarded)
+
+    def _draw_drawing(self) -> None:
+        room = imgui.get_content_region_avail().y - WORK_HEIGHT * self.gui.scale
+        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * self.gui.scale)))
+        draw_picture(self.widgets, self.session, self.commands)
+        self.widgets.rule()
+        draw_dots(self.widgets, self.session)
+        imgui.end_child()
+        draw_work(self.widgets, self.session, self.commands)
+
+    def _draw_view(self) -> None:
+        draw_view(self.widgets, self.look, self.view, self.commands)
+        if self.session.reference is not None:
+            self.widgets.rule()
+            draw_reference(self.widgets, self.session, self.look, self.commands)
+
+    def _draw_history(self) -> None:
+        draw_history(self.widgets, self.session, self.painting, self.commands)
+
+    def show_panel(self, name: str) -> None:
+        """Bring a panel to the front."""
+        self.panels.show(name)
+        self._schedule.note_input(self._clock())
+
+    def reset_panels(self) -> None:
+        """Show every panel where it was at first."""
+        self.panels.show_all()
+        self._layout.reset()
+
+    def show_selection(self) -> None:
+        """Look at the chosen dots."""
+        box = self.painting.selected_box()
+        if box is None:
+            self.session.messages.say("no dots are selected", WARNING)
+        else:
+            self.view.show_box(*box)
+
+    def _draw_tools(self) -> None:
+        draw_tools(self.widgets, self.painting.toolbox, self.commands)
+
+    def _draw_overlay(self, area: Rect) -> None:
+        draw_overlay(self.painting.toolbox, self.view, area, self._ratio, self.pointer.at_mm)
+
+    def _draw_lens(self, area: Rect) -> None:
+        at_px, brush = self.pointer.at_px, self.painting.toolbox.brush
+        if self.look.lens == "none" or at_px is None or self.session.drawing is None:
+            return
+        beside = brush is not None and brush.about.rhythm != "select"
+        reach_px = brush.radius_mm * self.view.camera.px_per_mm if brush and beside else None
+        diameter_px = self.look.lens_diameter * self.gui.scale * self._ratio
+        glass = place_lens(self.view, at_px, self.look.lens_factor, diameter_px, reach_px)
+        self.canvas.show_lens(area, glass, self.gui.scale, self._ratio)
+        if brush is not None and beside:
+            draw_tip_in_lens(brush, glass, self.pointer.at_mm, area, self._ratio)
+
+    def _draw_status(self) -> None:
+        camera = self.view.camera
+        zoom = camera.px_per_mm / self._window.px_per_mm
+        sight = Sight(camera, self.pointer.at_mm, zoom, self.look.dots_shown)
+        draw_status(self.widgets, self.session, sight, self._rate)
+
+    def _previewed(self) -> Preview | None:
+        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        if self.session.pen:
+            return Preview(pen_named(self.session.pen).change)
+        hovers = isinstance(self.pointer.state, Idle)
+        return self.shaping.preview or (
+            self.painting.preview(self.pointer.at_mm) if hovers else None
+        )
+
+    def _place(self, area: Rect) -> None:
+        """Tell view and pointer where the canvas is."""
+        self._ratio = ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
+        self.pointer.place((area[0] * ratio, area[1] * ratio))
+        self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
+        if self.session.drawing is not None:
+            self.view.show(self.session.drawing.page)
+
+    def _take(self, event: Event) -> None:
+        """Bring one event to whom it concerns."""
+        self.lens_key.take(event)
+        match event:
+            case Scrolled() if self.lens_key.is_held:
+                self.lens_key.strengthen(event.dy)
+            case Dropped(paths=paths):
+                self.popups.filing.drop(paths)
+            case CloseAsked():
+                self.popups.filing.quit()
+            case KeyDown() if self.popups.take(event) or self.gui.wants_keys:
+                pass
+            case KeyDown(key="escape") if self.shaping.let_go():
+                imgui.internal.clear_active_id()
+            case KeyDown() if self.painting.is_busy or self.painting.leave(event):
+                self._paint(event)
+            case KeyDown() if self.commands.take(event):
+                pass
+            case _ if self._paint(event):
+                pass
+            case _:
+                self.pointer.take(event, elsewhere=self.gui.wants_pointer)
+
+    def _paint(self, event: Event) -> bool:
+        """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
+        free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
+        if isinstance(event, Moved | Pressed | Released | Scrolled):
+            held = self.painting.is_busy and not isinstance(event, Pressed)  # that is the panel's
+            if not (free or held):
+                return False
+            event = self.pointer.local(event)
+        return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)
+
+    # --- what is kept -------------------------------------------------------------------------
+
+    def _load_keys(self) -> None:
+        problems = [self._kept.problem]
+        if self._kept.folder is not None:
+            problems.append(load_keys(self._kept.folder, self.commands))
+        for problem in filter(None, problems):
+            self.session.messages.say(problem, WARNING)
+
+    def _keep(self) -> None:
+        """Write the preferences, if they have changed."""
+        kept = self._kept
+        kept.note_values(self.session)
+        kept.place = self._window.place
+        kept.layout, kept.layout_scale = self.gui.layout, self.gui.scale
+        try:
+            kept.keep()
+        except StipplerError as error:
+            self.session.messages.say(str(error), WARNING)
+
+    # --- what may go wrong, and what comes later ----------------------------------------------
+
+    def _guarded(self, where: str, draw: Callable[[], None]) -> None:
+        """Draw a part; if it fails, close what it left open, tell, and go on with the rest."""
+        state = imgui.internal.ErrorRecoveryState()
+        imgui.internal.error_recovery_store_state(state)
+        try:
+            draw()
+        except Exception as error:  # noqa: BLE001 - a faulty panel must not end the editor
+            imgui.internal.error_recovery_try_to_recover_state(state)
+            self._report(error, where)
+
+    def _report(self, error: Exception, where: str) -> None:
+        what = str(error).strip().partition("\n")[0][:120]
+        text = f"{where} failed ({type(error).__name__}: {what}); the drawing is safe"
+        self.session.messages.say(text, ERROR, error)
+
+    def _plan_wakes(self) -> None:
+        now = self._clock()
+        message = self.session.messages
+        if message.current is not None:
+            self._schedule.wake_at(now + message.left_s + 0.01)
+        if self.gui.wants_keys:
+            self._schedule.wake_at(now + _CARET_S)
+        if self.popups.dialogs.waiting:
+            self._schedule.wake_at(now + _ANSWER_S)

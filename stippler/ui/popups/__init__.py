@@ -1,0 +1,1 @@
+"""Windows over the canvas that take the keyboard: dialogs, palette, preferences."""

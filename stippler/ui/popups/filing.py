@@ -1,0 +1,152 @@
+"""What a person does with files: open, export, begin anew, leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stippler.editor.commands import Command
+from stippler.editor.messages import WARNING
+from stippler.editor.session import Session
+from stippler.resources import assets
+from stippler.ui.popups.file_dialogs import Dialogs
+from stippler.ui.popups.unsaved_guard import Guard
+from stippler.ui.preferences import Preferences
+
+if TYPE_CHECKING:
+    from stippler.drawing.drawing import Page
+    from stippler.jobs.work import Source
+
+EXPORT_DPI = 600.0
+
+
+class Filing:
+    """Opens and exports for a session; what would lose a person's changes asks first.
+
+    Parameters
+    ----------
+    end : callable
+        Closes the window.
+    """
+
+    def __init__(
+        self, session: Session, dialogs: Dialogs, kept: Preferences, end: Callable[[], None]
+    ) -> None:
+        self._session, self._dialogs, self._kept, self._end = session, dialogs, kept, end
+        self.guard = Guard(session, self.export_as, lambda: dialogs.is_open)
+        self._noted: Source | None = None
+
+    # --- opening ------------------------------------------------------------------------------
+
+    def ask_picture(self) -> None:
+        """Ask for a picture, and open it."""
+        source = self._session.source
+        folder = source.path.resolve().parent if source else Path.cwd()
+        self._dialogs.ask_picture(folder, self.open)
+
+    def open(self, path: Path) -> None:
+        """Open a picture."""
+        self.guard.then(f"Opening {path.name}", lambda: self._session.open(path))
+
+    def open_recent(self, path: Path) -> None:
+        """Open a picture of the list; one that is gone is taken off it."""
+        if path.is_file():
+            self.open(path)
+            return
+        self._kept.recent.remove(path)
+        self._session.messages.say(
+            f"{path}: is not there any more; it is taken off the list", WARNING
+        )
+
+    def recent(self) -> list[Command]:
+        """Return a command for each picture of the list, the last one first."""
+        return [
+            Command(
+                f"file.recent {path}", f"Open {path.name}", self._opener(path), detail=_short(path)
+            )
+            for path in self._kept.recent
+        ]
+
+    def _opener(self, path: Path) -> Callable[[], None]:
+        return lambda: self.open_recent(path)
+
+    def forget_recent(self) -> None:
+        """Empty the list of recent pictures."""
+        self._kept.recent.clear()
+
+    def drop(self, paths: tuple[Path, ...]) -> None:
+        """Open what was dropped on the window; a file dialog has its answer by that."""
+        if paths and not self.guard.is_open:
+            self._dialogs.dismiss()
+        if len(paths) > 1:
+            self._session.messages.say(f"one picture at a time; {paths[0].name} is opened", WARNING)
+        if paths:
+            self.open(paths[0])
+
+    def note_opened(self) -> bool:
+        """Put the open picture on the list of recent ones; return whether the list is new."""
+        source = self._session.source
+        if source is self._noted:
+            return False
+        self._noted = source
+        if source is None or source.path.resolve().is_relative_to(assets().resolve()):
+            return False
+        self._kept.note_opened(source.path)
+        return True
+
+    # --- beginning anew -----------------------------------------------------------------------
+
+    def begin(self, page: Page) -> None:
+        """Begin a drawing on an empty page."""
+        self.guard.then("A new page", lambda: self._session.new(page))
+
+    def start(self) -> None:
+        """Stipple the open picture; another tone or width begins another drawing."""
+        if self._session.starts_afresh:
+            self.guard.then("Starting with another tone or width", self._session.start)
+        else:
+            self._session.start()
+
+    def quit(self) -> None:
+        """Close the window."""
+        if not self.guard.is_open:
+            self._dialogs.dismiss()
+        self.guard.then("Quitting", self._end, leaving=True)
+
+    # --- exporting ----------------------------------------------------------------------------
+
+    def export(self) -> None:
+        """Write to the file that the drawing was last written to, or ask for one."""
+        path = self._session.exports.path
+        if path is None or not self._session.n_dots:
+            self.export_as()
+        else:
+            self._session.export(path, EXPORT_DPI)
+
+    def export_as(self) -> None:
+        """Ask where to write the drawing, and write it."""
+        session = self._session
+        if session.drawing is None or not session.n_dots:
+            session.export(Path("drawing.svg"), EXPORT_DPI)  # says why there is nothing to write
+            return
+        from stippler.export import ENDINGS
+
+        self._dialogs.ask_export(
+            session.exports.path or _first_path(session.source),
+            ENDINGS,
+            lambda path: session.export(path, EXPORT_DPI),
+        )
+
+
+def _first_path(source: Source | None) -> Path:
+    """Offer a place beside the picture, or in the current folder if that is a bundled sample's."""
+    path = source.path if source else Path("drawing")
+    bundled = path.resolve().is_relative_to(assets().resolve())
+    return (Path.cwd() if bundled else path.resolve().parent) / f"{path.stem}.svg"
+
+
+def _short(path: Path) -> str:
+    """Return a picture's folder, from the person's home on."""
+    folder, home = path.parent, Path.home()
+    return f"~/{folder.relative_to(home)}" if folder.is_relative_to(home) else str(folder)

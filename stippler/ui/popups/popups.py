@@ -1,0 +1,78 @@
+"""The windows over the canvas that take the keyboard: dialogs, palette, sheet, preferences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from stippler.editor.commands import Commands, Key
+from stippler.editor.events import KeyDown
+from stippler.editor.keymap import save_keys
+from stippler.editor.messages import WARNING
+from stippler.editor.session import Session
+from stippler.errors import StipplerError
+from stippler.ui.popups.file_dialogs import Dialogs
+from stippler.ui.popups.filing import Filing
+from stippler.ui.popups.new_page import NewPage
+from stippler.ui.popups.palette import Palette
+from stippler.ui.popups.preferences_window import PreferencesWindow
+from stippler.ui.popups.shortcut_sheet import Sheet
+from stippler.ui.preferences import Preferences
+from stippler.ui.widgets import Widgets
+from stippler.ui.window.window import Window
+
+Guarded = Callable[[str, Callable[[], None]], None]
+
+
+class Popups:
+    """All of them; `draw` is called in every frame."""
+
+    def __init__(
+        self, window: Window, session: Session, kept: Preferences, *, use_native: bool
+    ) -> None:
+        self._session, self._kept = session, kept
+        self.dialogs = Dialogs(use_native=use_native)
+        self.filing = Filing(session, self.dialogs, kept, window.end)
+        self.new_page = NewPage(self.filing.begin)
+        self.palette = Palette(kept, self.filing.recent)
+        self.sheet = Sheet()
+        self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
+        self.commands: Commands | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether one has the keyboard that lets nothing else have it."""
+        return (
+            self.dialogs.is_open
+            or self.filing.guard.is_open
+            or self.new_page.is_open
+            or self.palette.is_open
+            or self.sheet.is_open
+        )
+
+    def take(self, event: KeyDown) -> bool:
+        """Take a key; return whether it is for one of the windows, and for no command."""
+        assert self.commands is not None
+        if self.sheet.is_open:
+            owner = self.commands.owner(Key(event.key, event.mods))
+            if owner is not None and owner.name == "help.keys":
+                self.sheet.ask()
+        return self.is_open or self.preferences.take(event, self.commands)
+
+    def draw(self, widgets: Widgets, guarded: Guarded) -> None:
+        """Draw what is open; a faulty one leaves the others alone."""
+        commands = self.commands
+        assert commands is not None
+        guarded("the preferences", lambda: self.preferences.draw(widgets, commands))
+        guarded("the dialog", lambda: self.dialogs.draw(widgets))
+        guarded("the new page", lambda: self.new_page.draw(widgets))
+        guarded("the question", lambda: self.filing.guard.draw(widgets))
+        guarded("the palette", lambda: self.palette.draw(widgets, commands))
+        guarded("the shortcuts", lambda: self.sheet.draw(widgets, commands))
+
+    def _keep_keys(self) -> None:
+        if self._kept.folder is None or self.commands is None:
+            return
+        try:
+            save_keys(self._kept.folder, self.commands)
+        except StipplerError as error:
+            self._session.messages.say(str(error), WARNING)

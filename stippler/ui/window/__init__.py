@@ -1,0 +1,1 @@
+"""The window: GLFW, input as events, ImGui on it, and scripted hands for tests."""
