@@ -168,7 +168,7 @@ def render(
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
     from stippler.export import check_output
 
-    check_output(output, dpi)
+    check_output(output, dpi, [file])
     plan = _plan(
         n_dots=dots,
         size_range_mm=_size_range(size_range),
