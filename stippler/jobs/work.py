@@ -199,4 +199,4 @@ def export_drawing(drawing: Drawing, path: Path, dpi: float) -> Iterator[Path]:
 
 def frozen(drawing: Drawing) -> Drawing:
     """Copy what an export reads, so that the drawing may change meanwhile."""
-    return replace(drawing, areas=list(drawing.areas), dots=drawing.dots.copy())
+    return drawing.snapshot()

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.polygon import orient
 
+from stippler.drawing.validation import floats
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.validation import floats
 
 Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
 
