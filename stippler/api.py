@@ -236,7 +236,7 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
 def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
     from PIL import Image
 
-    from stippler.files import picture
+    from stippler.files.read import picture
 
     picture.check_tone(tone)
     if isinstance(image, str | PathLike):

@@ -84,7 +84,7 @@ def stipple_picture(
     """
     if reference is None:
         yield Work(READ)
-        from stippler.files.picture import read_picture
+        from stippler.files.read.picture import read_picture
 
         reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
         yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
