@@ -85,7 +85,7 @@ def members_of(drawing: Drawing, more: Members | None = None) -> dict[str, bytes
     document: dict[str, Any] = {
         "page": _value(records.PAGE, 0, drawing.page, foreign),
         "reference": None,
-        "next_id": {kind: int(i) for kind, i in drawing.next_id.items()},
+        "next_id": {kind: drawing.first_free(kind) for kind in (records.DOT, *_TABLES)},
         "dots": _write_dots(drawing.dots, members),
         "pictures": pictures,
     }
@@ -166,7 +166,7 @@ def drawing_of(
     }
     dots = _read_dots(document.get("dots"), members, used, tables, place)
     drawing = Drawing(
-        page,  # type: ignore[arg-type]
+        page,
         tables[records.AREA],
         dots,
         reference,

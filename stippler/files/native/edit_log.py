@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 
 import numpy as np
 
@@ -40,8 +41,8 @@ class EditLog:
             for digest, picture in entry.edit.pictures.items():
                 if digest not in self._known:
                     self._known.add(digest)
-                    self._append(lambda picture=picture: _of_picture(picture))
-        self._append(lambda: of_entry(entry))
+                    self._append(partial(_of_picture, picture))
+        self._append(partial(of_entry, entry))
 
 
 def of_entry(entry: Entry) -> bytes:
