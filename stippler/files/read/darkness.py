@@ -73,7 +73,7 @@ def _band(samples: NDArray[Any], pixels: Pixels, light: Light, tone: str) -> NDA
     if pixels.inverted:
         colours = colours.dtype.type(white) - colours
     if pixels.colour == "cmyk" and not light.profile:
-        colours = _without_ink(colours, white)
+        colours, white = _without_ink(colours, white), DEEPEST
     dark = light.darkness(colours, white)
     if tone == "perceptual" and len(light.tables) != 1:
         dark = _to_perceptual(dark)
@@ -95,11 +95,11 @@ def _straight(colours: NDArray[Any], alpha: NDArray[Any]) -> NDArray[np.uint16]:
     return straight
 
 
-def _without_ink(ink: NDArray[Any], white: int) -> NDArray[Any]:
+def _without_ink(ink: NDArray[Any], white: int) -> NDArray[np.uint16]:
     """Return the RGB of CMYK inks that are as they would be by name."""
     paper = (white - ink.astype(np.float32)) / np.float32(white)
-    rgb = paper[..., :3] * paper[..., 3:]
-    return np.rint(rgb * np.float32(white)).astype(ink.dtype)
+    rgb: NDArray[np.uint16] = np.rint(paper[..., :3] * paper[..., 3:] * DEEPEST).astype(np.uint16)
+    return rgb
 
 
 # --- floats -----------------------------------------------------------------------------------
