@@ -73,7 +73,7 @@ def _band(samples: NDArray[Any], pixels: Pixels, light: Light, tone: str) -> NDA
     if pixels.inverted:
         colours = colours.dtype.type(white) - colours
     if pixels.colour == "cmyk" and not light.profile:
-        colours, white = _without_ink(colours, white), DEEPEST
+        colours = _without_ink(colours, white)
     dark = light.darkness(colours, white)
     if tone == "perceptual" and len(light.tables) != 1:
         dark = _to_perceptual(dark)
@@ -96,7 +96,10 @@ def _straight(colours: NDArray[Any], alpha: NDArray[Any]) -> NDArray[np.uint16]:
 
 
 def _without_ink(ink: NDArray[Any], white: int) -> NDArray[np.uint16]:
-    """Return the RGB of CMYK inks that are as they would be by name."""
+    """Return the RGB of CMYK inks that are as they would be by name, for tables of `steps_of`."""
+    if white == 255:
+        paper_8 = 255 - ink.astype(np.uint16)
+        return paper_8[..., :3] * paper_8[..., 3:]
     paper = (white - ink.astype(np.float32)) / np.float32(white)
     rgb: NDArray[np.uint16] = np.rint(paper[..., :3] * paper[..., 3:] * DEEPEST).astype(np.uint16)
     return rgb
