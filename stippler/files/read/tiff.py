@@ -175,7 +175,8 @@ def _three_bytes(samples: NDArray[np.uint32], byteorder: str) -> NDArray[np.uint
     """Order the bytes of samples of 24 bits, which tifffile leaves out of order."""
     if byteorder == ">":
         return samples.byteswap()
-    return ((samples & 0xFF) << 16) | (samples & 0xFF00) | (samples >> 16 & 0xFF)
+    ordered = ((samples & 0xFF) << 16) | (samples & 0xFF00) | (samples >> 16 & 0xFF)
+    return ordered.astype(np.uint32)
 
 
 def _by_palette(samples: NDArray[Any], page: TiffPage) -> NDArray[np.uint16]:
