@@ -20,12 +20,12 @@ from stippler.kernels.cells.border import (
     outline_of_lanes,
     outline_within,
     put_numbers,
-    share_before_walls,
     sum_area,
     sum_field,
 )
 from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
 from stippler.kernels.cells.grid import seen_distance, spot_of
+from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
 from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
 from stippler.kernels.cells.tables import (
@@ -145,14 +145,19 @@ def _relax(
             continue
         if len(outlines.n_sides):
             _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
-        du, dv = _way_to_centroid(U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads)
-        if n:
+        mass, du, dv = _centroid_of(U, V, m, is_packed, n, field, spot, i, cells, pads)
+        if n and mass > 0.0:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
-            share = free_share(pads.out, n, du, dv, margin, True)
-            du, dv = share * du, share * dv
-            # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
-            share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
-            du, dv = share * du, share * dv
+            area = mass
+            if len(field.sums):
+                area, _u, _v, _second = sum_area(pads.out, n)
+            du, dv = move_in_piece(pads.out, n, area, du, dv, over, margin)
+            if crosses_border(border.edge, pads.near, n_near, spot, du, dv):
+                du = dv = 0.0
+        elif over < 1.0 or (
+            over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)
+        ):
+            du, dv = over * du, over * dv
         moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
         moves.y[i] = min(max(y + dv, grid.real[c, 5]), grid.real[c, 7])
         moves.gone[i] = math.sqrt(du * du + dv * dv)
@@ -228,15 +233,15 @@ def _cell_of_dot(
 
 
 @merged
-def _way_to_centroid(
-    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot,
-    over: float, i: int, cells: F8, pads: Pads,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+def _centroid_of(
+    U: Any, V: Any, m: int, is_packed: bool, n: int, field: Field, spot: Spot, i: int, cells: F8,
+    pads: Pads,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return a cell's mass and the way to its (weighted) centroid; 0 without mass."""
     is_whole = n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
-        area, du, dv = moments_of(U, V, m)
-        area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+        mass, du, dv = moments_of(U, V, m)
+        mass, du, dv = 0.5 * mass, du / 6.0, dv / 6.0
     else:
         if n == 0:
             n = m
@@ -244,25 +249,23 @@ def _way_to_centroid(
                 outline_of_lanes(U, V, m, pads.out)
             else:
                 outline_of_cell(pads.cell, m, pads.out)
-        area = du = dv = 0.0
+        mass = du = dv = 0.0
         if len(field.sums) == 0 or len(cells):
-            area, du, dv, second = sum_area(pads.out, n)
-        if len(cells):
-            cells[i, 3], cells[i, 4] = area, second
+            mass, du, dv, second = sum_area(pads.out, n)
+            if len(cells):
+                cells[i, 3], cells[i, 4] = mass, second
         if len(field.sums):
-            area, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
-    if area > 0.0:
-        du, dv = du / area, dv / area
+            mass, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
+    if mass > 0.0:
+        du, dv = du / mass, dv / mass
     else:
-        area = du = dv = 0.0
+        mass = du = dv = 0.0
     if len(cells):
-        cells[i, 0], cells[i, 1], cells[i, 2] = area, du, dv
+        cells[i, 0], cells[i, 1], cells[i, 2] = mass, du, dv
     if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
-        share = free_share(pads.out, n, du, dv, 0.0, False)
+        share = free_share(pads.out, n, du, dv)
         du, dv = share * du, share * dv
-    if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
-        du, dv = over * du, over * dv
-    return du, dv
+    return mass, du, dv
 
 
 @inner
