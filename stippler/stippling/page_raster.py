@@ -23,6 +23,7 @@ from stippler.stippling.plan import MAX_DOTS
 from stippler.stippling.tone import DotRule, rule_for
 
 _BLEED = 3.0  # mean spacings
+_LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
 _MIN_DOTS = 500  # below this a bleed is not worth it
 _PIXELS_PER_DOT = 60  # blocks of a reference that is finer are averaged
 _MIN_PIXELS = 2_500_000
@@ -77,8 +78,10 @@ class PageRaster:
         if size_range_mm is not None:
             size_px = (size_range_mm[0] / pixel_mm, size_range_mm[1] / pixel_mm)
         bleed = 0
-        if bleeds and guess >= _MIN_DOTS and _border(darkness).any():
-            bleed = math.ceil(_BLEED * math.sqrt(darkness.size / guess))
+        spacing = math.sqrt(darkness.size / guess)
+        wide = min(darkness.shape) >= _LEAST_WIDTH * spacing
+        if bleeds and wide and guess >= _MIN_DOTS and _border(darkness).any():
+            bleed = math.ceil(_BLEED * spacing)
         border = _border(darkness) if bleed else darkness[0, :0]
         rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
         share = _share_that_fits(rule, darkness, bleed, guess)
