@@ -19,6 +19,7 @@ from stippler.kernels.cells.border import (
     outline_of_cell,
     outline_of_lanes,
     outline_within,
+    put_numbers,
     share_before_walls,
     sum_area,
     sum_field,
@@ -35,6 +36,7 @@ from stippler.kernels.cells.tables import (
     Field,
     Grid,
     Moves,
+    Outlines,
     Pads,
     Spot,
     Stars,
@@ -46,7 +48,7 @@ from stippler.kernels.cells.voronoi import (
     start_lanes,
     unpack_lanes,
 )
-from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, merged
+from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, inner, merged
 from stippler.kernels.machine.simd import (
     BUFFER,
     get,
@@ -65,6 +67,7 @@ INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 def relax_dots(
     start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
     border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
+    outlines: Outlines,
 ) -> None:  # fmt: skip
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
@@ -79,8 +82,10 @@ def relax_dots(
     moves, stars
         Results.
     cells
-        Result, by row, unless empty: mass, centroid relative to the dot, second moment of area
-        (0 with a density).
+        Result, by row, unless empty: mass, centroid relative to the dot, area, second moment of
+        area.
+    outlines
+        Results, unless empty.
     """
     room = border.most_edges + 1
     pads = Pads(
@@ -90,16 +95,20 @@ def relax_dots(
         np.full(len(border.edge) + 1, -1, np.int64),
         np.zeros(1, np.int64),
         np.empty((room, 5)),
-        np.empty((room, 4)),
-        np.empty((2 * room + 3 * corner_cap + 8, 4)),
+        np.empty((room, 5)),
+        np.empty((2 * room + 3 * corner_cap + 8, 6)),
     )
-    _relax(start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, pads)
+    _relax(
+        start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars,
+        outlines, pads,
+    )  # fmt: skip
 
 
 @bare_kernel
 def _relax(
     start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
-    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, pads: Pads,
+    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, outlines: Outlines,
+    pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
     for k in range(BUFFER):
@@ -119,7 +128,7 @@ def _relax(
         if grid.whole[c, 3] == 1:
             cell = spot.first_cell + spot.iy * spot.nx + spot.ix
             free = max(border.clear[cell] - 1, 0) * spot.h
-        m, is_packed, n_border, n, reach2, free, n_near = _cell_of_dot(
+        m, is_packed, n, reach2, free, n_near = _cell_of_dot(
             U, V, N, dots, grid, border, spot, free, pads
         )
         moves.free[i] = free
@@ -134,12 +143,14 @@ def _relax(
             _keep_star(N, m if is_packed else ZERO, i, stars)
         if is_fixed:
             continue
+        if len(outlines.n_sides):
+            _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
         du, dv = _way_to_centroid(U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads)
-        if n_border:
+        if n:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
-            share = free_share(pads.out, n_border, du, dv, margin)
+            share = free_share(pads.out, n, du, dv, margin, True)
             du, dv = share * du, share * dv
-        if n:  # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
+            # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
             share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
             du, dv = share * du, share * dv
         moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
@@ -152,14 +163,14 @@ def _relax(
 def _cell_of_dot(
     U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
     pads: Pads,
-) -> tuple[int, bool, int, int, float, float, int]:  # fmt: skip
+) -> tuple[int, bool, int, float, float, int]:  # fmt: skip
     """Compute a dot's cell; `free` is a distance within which no border edge lies.
 
     Returns
     -------
     m, is_packed
         Its corners, in lanes or, if not `is_packed`, in ``pads.cell``; or `OVERFLOW`.
-    n_border, n
+    n
         Segments in ``pads.out`` if the border cuts the cell, see `outline_piece`, else 0.
     reach2, free
         Squared distance of the farthest corner; what is now known to be free of border edges.
@@ -175,7 +186,7 @@ def _cell_of_dot(
     is_packed = True
     m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
-        n_border = n = n_near = ZERO
+        n = n_near = ZERO
         reach2, is_swept = 0.0, False
         if is_packed:
             is_swept = ring == SWEEP_FROM and free == math.inf
@@ -208,12 +219,12 @@ def _cell_of_dot(
                 # the cell may lean out of the compartment: only its piece counts
                 if is_packed:
                     unpack_lanes(U, V, N, m, dots.x, dots.y, spot, pads.cell)
-                n_border, n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
+                n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
                 is_last = is_last or 4.0 * r2 <= far * far
         if is_last:
             break
         ring += 1
-    return m, is_packed, n_border, n, reach2, free, n_near
+    return m, is_packed, n, reach2, free, n_near
 
 
 @merged
@@ -222,7 +233,7 @@ def _way_to_centroid(
     over: float, i: int, cells: F8, pads: Pads,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
-    second, is_whole = 0.0, n == 0
+    is_whole = n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
         area, du, dv = moments_of(U, V, m)
         area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
@@ -233,22 +244,60 @@ def _way_to_centroid(
                 outline_of_lanes(U, V, m, pads.out)
             else:
                 outline_of_cell(pads.cell, m, pads.out)
+        area = du = dv = 0.0
+        if len(field.sums) == 0 or len(cells):
+            area, du, dv, second = sum_area(pads.out, n)
+        if len(cells):
+            cells[i, 3], cells[i, 4] = area, second
         if len(field.sums):
             area, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
-        else:
-            area, du, dv, second = sum_area(pads.out, n)
     if area > 0.0:
         du, dv = du / area, dv / area
     else:
         area = du = dv = 0.0
     if len(cells):
-        cells[i, 0], cells[i, 1], cells[i, 2], cells[i, 3] = area, du, dv, second
+        cells[i, 0], cells[i, 1], cells[i, 2] = area, du, dv
     if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
-        share = free_share(pads.out, n, du, dv, 0.0)
+        share = free_share(pads.out, n, du, dv, 0.0, False)
         du, dv = share * du, share * dv
     if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
         du, dv = over * du, over * dv
     return du, dv
+
+
+@inner
+def _put_outline(
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, first_edge: int, w: int, pads: Pads,
+    outlines: Outlines,
+) -> None:  # fmt: skip
+    """Append a cell's outline, without sides of no length."""
+    out = pads.out
+    if n == 0:
+        n = m
+        if is_packed:
+            outline_of_lanes(U, V, m, out)
+        else:
+            outline_of_cell(pads.cell, m, out)
+        put_numbers(N, pads.cell, m, is_packed, first_edge, out)
+    corner, beyond, following = outlines.corner, outlines.beyond, outlines.following
+    base = outlines.used[0]
+    k = first = ZERO
+    ring = 0.0
+    for s in range(n):
+        if out[s, 5] != ring:
+            if k > first and base + k <= len(corner):
+                following[base + k - 1] = first
+            first, ring = k, out[s, 5]
+        if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
+            continue
+        if base + k < len(corner):
+            corner[base + k, 0], corner[base + k, 1] = out[s, 0], out[s, 1]
+            beyond[base + k], following[base + k] = int(out[s, 4]), k + 1
+        k += 1
+    if k > first and base + k <= len(corner):
+        following[base + k - 1] = first
+    outlines.n_sides[w] = k
+    outlines.used[0] = base + k
 
 
 @inline
