@@ -96,7 +96,7 @@ def _reached(x, y, r, grids, k):
     """Return columns and rows, first to last, whose discs may meet one of radius r at (x, y)."""
     side = grids.real[k, 0]
     n_x, n_y = grids.whole[k, 0], grids.whole[k, 1]
-    span = int(math.ceil((r + grids.real[k, 3]) / side))
+    span = math.ceil((r + grids.real[k, 3]) / side)
     cx = min(max(int((x - grids.real[k, 1]) / side), 0), n_x - 1)
     cy = min(max(int((y - grids.real[k, 2]) / side), 0), n_y - 1)
     x0, x1 = max(cx - span, 0), min(cx + span, n_x - 1)
