@@ -224,7 +224,8 @@ class Cells:
         todo = np.empty(self.n, np.uint8)
         stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
         done = parallel_for(
-            verify_stars, self.n, self._dots, self._table, self._field, self.over, new, stars,
+            verify_stars, self.n, self._dots, self._table, self.grid.border, self._field,
+            self.over, new, stars,
             todo, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
