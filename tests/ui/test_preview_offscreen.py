@@ -111,7 +111,7 @@ def test_hovering_uploads_nothing_and_rests_with_the_pointer(opened, monkeypatch
     canvas = opened.app.editor.canvas
     renderer = canvas._renderer()
     for name in ("set_dots", "update_dots", "set_positions"):
-        monkeypatch.setattr(renderer, name, lambda *_, **__: pytest.fail("dots were uploaded"))
+        monkeypatch.setattr(scene, name, lambda *_, **__: pytest.fail("dots were uploaded"))
     hover(opened, AT)
     n_drawn = canvas.patch.n_drawn
     assert n_drawn > 0
