@@ -14,7 +14,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from imgui_bundle import imgui  # isort: skip - first: glfw then uses its library
 import glfw
 import numpy as np
 
@@ -49,7 +48,6 @@ class _Desk:
     def __init__(self, app: App, gl: Apart) -> None:
         self.app, self.gl = app, gl
         self.host = Host(app.window, app.editor, app.step)
-        self._address = app.window.address
 
     def fill(self, n: int) -> None:
         """Open an empty page and put about so many dots on it."""
@@ -71,12 +69,12 @@ class _Desk:
 
     def move(self, x_px: int, y_px: int) -> None:
         """Move the pointer to a place of the window."""
-        imgui.backends.glfw_cursor_pos_callback(self._address, float(x_px), float(y_px))
+        self.app.window.input.move(float(x_px), float(y_px))
 
     def button(self, down: bool, which: int = glfw.MOUSE_BUTTON_LEFT) -> None:
         """Press a button or let go of it."""
         action = glfw.PRESS if down else glfw.RELEASE
-        imgui.backends.glfw_mouse_button_callback(self._address, which, action, 0)
+        self.app.window.input.button(which, action, 0)
 
     def frame(self) -> tuple[float, float]:
         """Draw a frame for what has happened; return our own share and the whole, ms."""
@@ -119,7 +117,7 @@ def _pauses(n: int, seconds: float) -> list[Figure]:
     driver: list[float] = []
     with _desk(n) as desk:
         session = desk.app.session
-        desk.app.editor.painting.toolbox.choose_kind("push")
+        desk.app.editor.painting.toolbox.choose("push")
         session.relax(100_000, weighted=False)
         desk.host.until(lambda: session.done > 2, "the relaxation")
         held, began = False, time.perf_counter()
@@ -152,7 +150,7 @@ def _latency(n: int, clicks: int) -> list[Figure]:
     counts = []
     with _desk(n) as desk:
         session, toolbox = desk.app.session, desk.app.editor.painting.toolbox
-        toolbox.choose_kind("add")
+        toolbox.choose("add")
         assert toolbox.brush is not None
         toolbox.set_brush(replace(toolbox.brush.with_value("dot_mm", _BIG_DOT_MM), radius_mm=0.5))
         session.relax(100_000, weighted=False)
@@ -189,7 +187,7 @@ def _many(n: int) -> list[Figure]:
     with _desk(n, opened=lambda times: note("first frame", times)) as desk:
         note("a frame of panning", _drag(desk, glfw.MOUSE_BUTTON_MIDDLE))
         for kind in ("push", "size", "relax", "spray", "thin", "erase"):
-            desk.app.editor.painting.toolbox.choose_kind(kind)
+            desk.app.editor.painting.toolbox.choose(kind)
             note(f"a frame of a stroke with {kind}", _drag(desk, glfw.MOUSE_BUTTON_LEFT))
     return out
 

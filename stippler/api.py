@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.drawing import Drawing as _Drawing
-from stippler.drawing.pens import pen_named
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
 from stippler.errors import ParameterError
 from stippler.stippling.plan import DEFAULT_PEN, Plan
 from stippler.stippling.stipple import Progress, notes_on, stages
@@ -35,15 +33,18 @@ class Drawing(_Drawing):
     notes : tuple of str
         What the drawing falls short of, if anything: parts too dark for its dots, how much and
         where; dots that did not fit.
+    inputs : tuple of Path
+        The files it was made from; `save` writes over none of them.
     """
 
     notes: tuple[str, ...] = ()
+    inputs: tuple[Path, ...] = ()
 
     def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
         """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi)
+        save(self, Path(path), dpi=dpi, inputs=self.inputs)
 
     def _repr_svg_(self) -> str:
         from stippler.files.svg import svg_chunks
@@ -138,16 +139,17 @@ def draw(
     show: Callable[[str, int, int], None] | None = None,
 ) -> Drawing:
     """Carry out a plan."""
-    reference = Reference(_darkness(image, tone), width_mm)
+    told: list[str] = []
+    reference = Reference(_darkness(image, tone, told), width_mm)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
             show(last.stage, last.done, last.total)
     assert last is not None, "stages() yields at least its end"
-    drawing = Drawing.from_reference(
-        reference, last.position_mm, last.radius_mm, _style(last.radius_mm, plan)
-    )
-    drawing.notes = notes_on(last)
+    drawing = Drawing.from_reference(reference, last.position_mm, last.radius_mm, plan)
+    drawing.notes = (*told, *notes_on(last))
+    if isinstance(image, str | PathLike):
+        drawing.inputs = (Path(image),)
     return drawing
 
 
@@ -228,26 +230,16 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
     return polygon_of(area, "area")
 
 
-def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
+def _darkness(image: Any, tone: str, notes: list[str] | None = None) -> NDArray[np.float32]:
     from PIL import Image
 
-    from stippler.files import picture
+    from stippler.files.read import picture
 
     picture.check_tone(tone)
     if isinstance(image, str | PathLike):
-        return picture.read_darkness(Path(image), tone)
+        return picture.read_darkness(Path(image), tone, notes)
     if isinstance(image, Image.Image):
         return picture.darkness_of_image(image, tone)
     if image is None:
         raise ParameterError("is missing", "image", "give a path, a Pillow image or an array")
     return picture.darkness_of_array(image, tone)
-
-
-def _style(radius_mm: NDArray[np.float32], plan: Plan) -> Style:
-    """Return the size range and the pen the dots were drawn with."""
-    pen = pen_named(plan.pen)
-    if plan.size_range_mm is not None:
-        return Style(*plan.size_range_mm, pen)
-    if not len(radius_mm):
-        return Style(pen=pen)
-    return Style(float(radius_mm.min()), float(radius_mm.max()), pen)

@@ -75,7 +75,7 @@ class Painting:
     def _is_wanted(self, event: Event) -> bool:
         """Whether an event is one that begins to paint."""
         pressed = isinstance(event, Pressed) and event.button == LEFT
-        return pressed and self.toolbox.brush is not None
+        return pressed and self.toolbox.tool is not None
 
     def _refuse(self) -> bool:
         if self._session.busy:
@@ -219,10 +219,15 @@ class Painting:
         document = self._document
         if document is None or self.is_busy:
             return
-        while document.history.n_done > n_done and self._session.paintable:
+        history = document.history
+        while (before := history.n_done) > n_done and self._session.paintable:
             self._session.undo()
-        while document.history.n_done < min(n_done, len(document.history.steps)):
+            if history.n_done != before - 1:
+                return  # steps were lost, which is said
+        while (before := history.n_done) < min(n_done, len(history.steps)):
             self._session.redo()
+            if history.n_done == before:
+                return
 
     def undo(self) -> None:
         """Take the last step back; not within a stroke."""
@@ -240,8 +245,8 @@ class Painting:
             return False
         if len(self.toolbox.selection.ids):
             self.select_none()
-        elif self.toolbox.brush is not None:
-            self.toolbox.choose(-1)
+        elif self.toolbox.tool is not None:
+            self.toolbox.choose("")
         else:
             return False
         return True

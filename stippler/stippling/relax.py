@@ -12,11 +12,12 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
-from stippler.stippling.validation import floats, whole
+from stippler.stippling.tessellation import Tessellation
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 
@@ -77,7 +78,7 @@ class Relaxation:
     Raises
     ------
     GeometryError
-        If a compartment is not valid or has no dots, or a dot lies outside.
+        If a compartment is not valid, or a dot lies outside.
 
     Notes
     -----
@@ -115,7 +116,6 @@ class Relaxation:
         if compartment_of_dot is not None:
             shape_of_dot = _checked(compartment_of_dot, n, np.int32, "compartment_of_dot", 0)
         found = self._parts.find(xy, shape_of_dot)
-        self._refuse_empty(found)
         self._part_coinciding(xy, found)
         self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
@@ -190,9 +190,13 @@ class Relaxation:
         """Return the (weighted) centroid of each dot's clipped cell, mm, in the order given."""
         return self.points + self._cells.measure(weighted=True)[:, 1:3]
 
+    def tessellation(self, weighted: bool = True) -> Tessellation:
+        """Return all cells, clipped, in the order given; masses by the density if `weighted`."""
+        return Tessellation.of_cells(self._cells, weighted)
+
     def energy(self) -> float:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""
-        return float(self._cells.measure(weighted=False)[:, 3].sum())
+        return float(self._cells.measure(weighted=False)[:, 4].sum())
 
     def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
         if self._method != "lloyd":
@@ -222,15 +226,6 @@ class Relaxation:
             float(gone.max(initial=0.0)),
             int(np.count_nonzero(gone)),
         )
-
-    def _refuse_empty(self, compartment_of_dot: NDArray[np.int32]) -> None:
-        shapes = self._parts.shape_of
-        counts = np.bincount(shapes[compartment_of_dot], minlength=int(shapes[-1]) + 1)
-        empty = np.flatnonzero(counts == 0)
-        if len(empty):
-            raise GeometryError(
-                "holds no dots", f"compartment {empty[0]}", "leave it out or give it dots"
-            )
 
     def _part_coinciding(
         self, xy: NDArray[np.float64], compartment_of_dot: NDArray[np.int32]

@@ -9,21 +9,18 @@ from imgui_bundle import imgui
 
 from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
+from stippler.editor.batches import parts_of
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
     Event,
     KeyDown,
-    Moved,
-    Pressed,
-    Released,
     Scrolled,
 )
+from stippler.editor.hands import Hands
 from stippler.editor.keymap import load_keys
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
-from stippler.editor.pointer import Pointer
-from stippler.editor.pointer_states import Idle
 from stippler.editor.rates import FrameRate
 from stippler.editor.schedule import Schedule
 from stippler.editor.session import Session
@@ -35,11 +32,10 @@ from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.canvas.pen_samples import PenSamples
-from stippler.ui.panels.brush import draw_brush
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import BRUSH, DRAWING, HISTORY, SHAPE, VIEW, Layout
+from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.menu import draw_menu
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
@@ -48,7 +44,8 @@ from stippler.ui.panels.progress import draw_work
 from stippler.ui.panels.reference import draw_reference
 from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.status import Sight, draw_status
-from stippler.ui.panels.tools import draw_tools
+from stippler.ui.panels.strip import draw_tools
+from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
@@ -62,6 +59,7 @@ _LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
+_REST_FRAMES = 2  # of the panels, until what one part of a batch has opened is there for the next
 
 
 class Editor:
@@ -89,19 +87,20 @@ class Editor:
         self.look = kept.look
         self.look.begin()
         self.view = View(BLANK, window.size_px)
-        self.pointer = Pointer(self.view)
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.hands = Hands(self.view, self.painting)
+        self.pointer = self.hands.pointer
         self.popups = Popups(window, session, kept, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
             {
                 DRAWING: self._draw_drawing,
-                BRUSH: lambda: draw_brush(self.widgets, self.painting, self.commands),
+                TOOL: self._draw_tool,
                 SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
                 VIEW: self._draw_view,
                 HISTORY: self._draw_history,
@@ -138,9 +137,12 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
-        if self.session.poll():
+        if self._poll():
             self._schedule.note_result()
-        if not self._schedule.due(began) or 0 in self._window.size_px:
+        if 0 in self._window.size_px:
+            self._take_unseen(events)
+            return False
+        if not self._schedule.due(began):
             return False
         self._frame(events, began)
         moving = self.view.moving or self.painting.toolbox.is_timed
@@ -148,6 +150,25 @@ class Editor:
         self._plan_wakes()
         self.n_frames += 1
         return True
+
+    def _poll(self) -> bool:
+        """Take the workers' results; one that cannot be taken ends the job, not the editor."""
+        try:
+            return self.session.poll()
+        except Exception as error:  # noqa: BLE001 - the drawing as it is lives on
+            self._report(error, "taking a result")
+        try:
+            self.session.stop()
+        except Exception as error:  # noqa: BLE001 - told; the job is let go of
+            self._report(error, "ending the work")
+        return True
+
+    def _take_unseen(self, events: list[Event]) -> None:
+        """Take what happens to a window that is minimised: nothing is drawn, nothing is lost."""
+        for event in events:
+            self._take_guarded(event, for_panels=self.gui.feed(event))
+        if self.popups.filing.guard.is_open:
+            self._window.restore()
 
     def close(self) -> None:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
@@ -162,11 +183,12 @@ class Editor:
     def _frame(self, events: list[Event], now_s: float) -> None:
         dt_s, self._last_s = min(now_s - self._last_s, 0.1), now_s
         self._rate.tick(now_s)
-        self.gui.dress(self.look)
-        self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
-        failure = self.gui.frame(lambda: self._draw_ui(events, dt_s))
-        if failure is not None:
-            self._report(failure, "the window")
+        *earlier, last = parts_of(events) or [[]]
+        for part in earlier:
+            self._build(part, 0.0)
+            for _ in range(_REST_FRAMES):
+                self._build([], 0.0)
+        self._build(last, dt_s)
         with self._window.frame() as screen:
             try:
                 self.canvas.draw(
@@ -187,13 +209,24 @@ class Editor:
         if self.popups.filing.note_opened():
             self._keep()
 
-    def _draw_ui(self, events: list[Event], dt_s: float) -> None:
+    def _build(self, events: list[Event], dt_s: float) -> None:
+        """Build the window's panels once and take events meanwhile; nothing is drawn yet."""
+        self.gui.dress(self.look)
+        fed = [(event, self.gui.feed(event)) for event in events]
+        self.widgets = Widgets(
+            self.look.theme, self.gui.fonts, self.gui.scale, self.gui.escape_level
+        )
+        failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
+        if failure is not None:
+            self._report(failure, "the window")
+
+    def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
         self._guarded("the menu", lambda: draw_menu(self.widgets, self.commands, recent))
         area = self._layout.draw(self.gui.scale)
         self._place(area)
-        for event in events:
-            self._take(event)
+        for event, for_panels in events:
+            self._take_guarded(event, for_panels=for_panels)
         self.lens_key.let_pass()
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
@@ -221,6 +254,10 @@ class Editor:
         draw_dots(self.widgets, self.session)
         imgui.end_child()
         draw_work(self.widgets, self.session, self.commands)
+
+    def _draw_tool(self) -> None:
+        n_selected = self.painting.n_selected
+        draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected)
 
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
@@ -253,19 +290,19 @@ class Editor:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)
 
     def _draw_overlay(self, area: Rect) -> None:
-        draw_overlay(self.painting.toolbox, self.view, area, self._ratio, self.pointer.at_mm)
+        overlay = self.painting.toolbox.overlay(self.pointer.at_mm)
+        draw_overlay(overlay, self.view, area, self.gui.scale, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
-        at_px, brush = self.pointer.at_px, self.painting.toolbox.brush
+        at_px, tip = self.pointer.at_px, self.painting.toolbox.overlay(self.pointer.at_mm).tip
         if self.look.lens == "none" or at_px is None or self.session.drawing is None:
             return
-        beside = brush is not None and brush.about.rhythm != "select"
-        reach_px = brush.radius_mm * self.view.camera.px_per_mm if brush and beside else None
+        reach_px = tip.brush.radius_mm * self.view.camera.px_per_mm if tip else None
         diameter_px = self.look.lens_diameter * self.gui.scale * self._ratio
         glass = place_lens(self.view, at_px, self.look.lens_factor, diameter_px, reach_px)
         self.canvas.show_lens(area, glass, self.gui.scale, self._ratio)
-        if brush is not None and beside:
-            draw_tip_in_lens(brush, glass, self.pointer.at_mm, area, self._ratio)
+        if tip is not None:
+            draw_tip_in_lens(tip, glass, area, self._ratio)
 
     def _draw_status(self) -> None:
         camera = self.view.camera
@@ -277,22 +314,30 @@ class Editor:
         """Return the change that is held in a panel, or that the brush or the plan will make."""
         if self.session.pen:
             return Preview(pen_named(self.session.pen).change)
-        hovers = isinstance(self.pointer.state, Idle)
+        hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None
         )
 
     def _place(self, area: Rect) -> None:
         """Tell view and pointer where the canvas is."""
-        self._ratio = ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
+        self._ratio = ratio = self._window.ratio[0]
         self.pointer.place((area[0] * ratio, area[1] * ratio))
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
 
-    def _take(self, event: Event) -> None:
+    def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
+        """Take an event; what fails is told, and those after it are taken as ever."""
+        try:
+            self._take(event, for_panels=for_panels)
+        except Exception as error:  # noqa: BLE001 - a faulty handler must not lose a release
+            self._report(error, "the input")
+
+    def _take(self, event: Event, *, for_panels: bool) -> None:
         """Bring one event to whom it concerns."""
         self.lens_key.take(event)
+        elsewhere = not self.hands.owns(event, over_panel=self.gui.wants_pointer)
         match event:
             case Scrolled() if self.lens_key.is_held:
                 self.lens_key.strengthen(event.dy)
@@ -300,28 +345,14 @@ class Editor:
                 self.popups.filing.drop(paths)
             case CloseAsked():
                 self.popups.filing.quit()
-            case KeyDown() if self.popups.take(event) or self.gui.wants_keys:
-                pass
             case KeyDown(key="escape") if self.shaping.let_go():
                 imgui.internal.clear_active_id()
-            case KeyDown() if self.painting.is_busy or self.painting.leave(event):
-                self._paint(event)
-            case KeyDown() if self.commands.take(event):
+            case KeyDown() if self.popups.take(event) or for_panels:
                 pass
-            case _ if self._paint(event):
+            case KeyDown() if self.hands.take_key(event) or self.commands.take(event):
                 pass
             case _:
-                self.pointer.take(event, elsewhere=self.gui.wants_pointer)
-
-    def _paint(self, event: Event) -> bool:
-        """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
-        free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
-        if isinstance(event, Moved | Pressed | Released | Scrolled):
-            held = self.painting.is_busy and not isinstance(event, Pressed)  # that is the panel's
-            if not (free or held):
-                return False
-            event = self.pointer.local(event)
-        return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)
+                self.hands.take(event, elsewhere=elsewhere)
 
     # --- what is kept -------------------------------------------------------------------------
 

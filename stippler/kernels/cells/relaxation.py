@@ -13,18 +13,20 @@ from typing import Any
 import numpy as np
 
 from stippler.kernels.cells.border import (
+    NOWHERE,
     border_distance,
     free_share,
     gather_edges,
     outline_of_cell,
     outline_of_lanes,
     outline_within,
-    share_before_walls,
+    put_numbers,
     sum_area,
     sum_field,
 )
 from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
 from stippler.kernels.cells.grid import seen_distance, spot_of
+from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
 from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
 from stippler.kernels.cells.tables import (
@@ -35,6 +37,7 @@ from stippler.kernels.cells.tables import (
     Field,
     Grid,
     Moves,
+    Outlines,
     Pads,
     Spot,
     Stars,
@@ -46,9 +49,10 @@ from stippler.kernels.cells.voronoi import (
     start_lanes,
     unpack_lanes,
 )
-from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, merged
+from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, inner, merged
 from stippler.kernels.machine.simd import (
     BUFFER,
+    LANES,
     get,
     moments_of,
     put,
@@ -58,13 +62,14 @@ from stippler.kernels.machine.simd import (
     store_lanes,
 )
 
-INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
-"""What a cell is: bounded by dots alone; by a border as well; not computed."""
+INNER, RIM, TOO_MANY_CORNERS, KEPT = 0, 1, 2, 3
+"""What a cell is: bounded by dots alone; near a border; not computed; near a border, and kept."""
 
 
 def relax_dots(
     start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
     border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
+    outlines: Outlines,
 ) -> None:  # fmt: skip
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
@@ -79,8 +84,10 @@ def relax_dots(
     moves, stars
         Results.
     cells
-        Result, by row, unless empty: mass, centroid relative to the dot, second moment of area
-        (0 with a density).
+        Result, by row, unless empty: mass, centroid relative to the dot, area, second moment of
+        area.
+    outlines
+        Results, unless empty.
     """
     room = border.most_edges + 1
     pads = Pads(
@@ -90,22 +97,28 @@ def relax_dots(
         np.full(len(border.edge) + 1, -1, np.int64),
         np.zeros(1, np.int64),
         np.empty((room, 5)),
-        np.empty((room, 4)),
-        np.empty((2 * room + 3 * corner_cap + 8, 4)),
+        np.empty((room, 5)),
+        np.empty((2 * room + 3 * corner_cap + 8, 6)),
     )
-    _relax(start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, pads)
+    _relax(
+        start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars,
+        outlines, pads,
+    )  # fmt: skip
 
 
 @bare_kernel
 def _relax(
     start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
-    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, pads: Pads,
+    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, outlines: Outlines,
+    pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
+    S = stack_ints(BUFFER)
     for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
         put(N, k, np.int32(0))
+        put(S, k, np.int32(0))
     for w in range(start, stop):
         i = w if is_all else which[w]
         x, y = dots.x[i], dots.y[i]
@@ -119,7 +132,7 @@ def _relax(
         if grid.whole[c, 3] == 1:
             cell = spot.first_cell + spot.iy * spot.nx + spot.ix
             free = max(border.clear[cell] - 1, 0) * spot.h
-        m, is_packed, n_border, n, reach2, free, n_near = _cell_of_dot(
+        m, is_packed, n, reach2, free, n_near = _cell_of_dot(
             U, V, N, dots, grid, border, spot, free, pads
         )
         moves.free[i] = free
@@ -131,17 +144,31 @@ def _relax(
             is_rim = is_rim or get(N, k) < 0
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
-            _keep_star(N, m if is_packed else ZERO, i, stars)
+            n_star = ZERO
+            if is_rim and grid.whole[c, 5] == 1:
+                n_star = _star_at_border(N, S, m, is_packed, n, grid.whole[c, 4], pads)
+            if n_star >= 3:
+                moves.kind[i] = KEPT
+                _keep_star(S, n_star, i, stars)
+            else:
+                _keep_star(N, m if is_packed else ZERO, i, stars)
         if is_fixed:
             continue
-        du, dv = _way_to_centroid(U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads)
-        if n_border:
+        if len(outlines.n_sides):
+            _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
+        mass, du, dv = _centroid_of(U, V, m, is_packed, n, field, spot, i, cells, pads)
+        if n and mass > 0.0:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
-            share = free_share(pads.out, n_border, du, dv, margin)
-            du, dv = share * du, share * dv
-        if n:  # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
-            share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
-            du, dv = share * du, share * dv
+            area = mass
+            if len(field.sums):
+                area, _u, _v, _second = sum_area(pads.out, n)
+            du, dv = move_in_piece(pads.out, n, area, du, dv, over, margin)
+            if crosses_border(border.edge, pads.near, n_near, spot, du, dv):
+                du = dv = 0.0
+        elif over < 1.0 or (
+            over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)
+        ):
+            du, dv = over * du, over * dv
         moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
         moves.y[i] = min(max(y + dv, grid.real[c, 5]), grid.real[c, 7])
         moves.gone[i] = math.sqrt(du * du + dv * dv)
@@ -152,14 +179,14 @@ def _relax(
 def _cell_of_dot(
     U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
     pads: Pads,
-) -> tuple[int, bool, int, int, float, float, int]:  # fmt: skip
+) -> tuple[int, bool, int, float, float, int]:  # fmt: skip
     """Compute a dot's cell; `free` is a distance within which no border edge lies.
 
     Returns
     -------
     m, is_packed
         Its corners, in lanes or, if not `is_packed`, in ``pads.cell``; or `OVERFLOW`.
-    n_border, n
+    n
         Segments in ``pads.out`` if the border cuts the cell, see `outline_piece`, else 0.
     reach2, free
         Squared distance of the farthest corner; what is now known to be free of border edges.
@@ -175,7 +202,7 @@ def _cell_of_dot(
     is_packed = True
     m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
-        n_border = n = n_near = ZERO
+        n = n_near = ZERO
         reach2, is_swept = 0.0, False
         if is_packed:
             is_swept = ring == SWEEP_FROM and free == math.inf
@@ -208,24 +235,24 @@ def _cell_of_dot(
                 # the cell may lean out of the compartment: only its piece counts
                 if is_packed:
                     unpack_lanes(U, V, N, m, dots.x, dots.y, spot, pads.cell)
-                n_border, n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
+                n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
                 is_last = is_last or 4.0 * r2 <= far * far
         if is_last:
             break
         ring += 1
-    return m, is_packed, n_border, n, reach2, free, n_near
+    return m, is_packed, n, reach2, free, n_near
 
 
 @merged
-def _way_to_centroid(
-    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot,
-    over: float, i: int, cells: F8, pads: Pads,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
-    second, is_whole = 0.0, n == 0
+def _centroid_of(
+    U: Any, V: Any, m: int, is_packed: bool, n: int, field: Field, spot: Spot, i: int, cells: F8,
+    pads: Pads,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return a cell's mass and the way to its (weighted) centroid; 0 without mass."""
+    is_whole = n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
-        area, du, dv = moments_of(U, V, m)
-        area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+        mass, du, dv = moments_of(U, V, m)
+        mass, du, dv = 0.5 * mass, du / 6.0, dv / 6.0
     else:
         if n == 0:
             n = m
@@ -233,22 +260,58 @@ def _way_to_centroid(
                 outline_of_lanes(U, V, m, pads.out)
             else:
                 outline_of_cell(pads.cell, m, pads.out)
+        mass = du = dv = 0.0
+        if len(field.sums) == 0 or len(cells):
+            mass, du, dv, second = sum_area(pads.out, n)
+            if len(cells):
+                cells[i, 3], cells[i, 4] = mass, second
         if len(field.sums):
-            area, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
-        else:
-            area, du, dv, second = sum_area(pads.out, n)
-    if area > 0.0:
-        du, dv = du / area, dv / area
+            mass, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
+    if mass > 0.0:
+        du, dv = du / mass, dv / mass
     else:
-        area = du = dv = 0.0
+        mass = du = dv = 0.0
     if len(cells):
-        cells[i, 0], cells[i, 1], cells[i, 2], cells[i, 3] = area, du, dv, second
+        cells[i, 0], cells[i, 1], cells[i, 2] = mass, du, dv
     if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
-        share = free_share(pads.out, n, du, dv, 0.0)
+        share = free_share(pads.out, n, du, dv)
         du, dv = share * du, share * dv
-    if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
-        du, dv = over * du, over * dv
-    return du, dv
+    return mass, du, dv
+
+
+@inner
+def _put_outline(
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, first_edge: int, w: int, pads: Pads,
+    outlines: Outlines,
+) -> None:  # fmt: skip
+    """Append a cell's outline, without sides of no length."""
+    out = pads.out
+    if n == 0:
+        n = m
+        if is_packed:
+            outline_of_lanes(U, V, m, out)
+        else:
+            outline_of_cell(pads.cell, m, out)
+        put_numbers(N, pads.cell, m, is_packed, first_edge, out)
+    corner, beyond, following = outlines.corner, outlines.beyond, outlines.following
+    base = outlines.used[0]
+    k = first = ZERO
+    ring = 0.0
+    for s in range(n):
+        if out[s, 5] != ring:
+            if k > first and base + k <= len(corner):
+                following[base + k - 1] = first
+            first, ring = k, out[s, 5]
+        if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
+            continue
+        if base + k < len(corner):
+            corner[base + k, 0], corner[base + k, 1] = out[s, 0], out[s, 1]
+            beyond[base + k], following[base + k] = int(out[s, 4]), k + 1
+        k += 1
+    if k > first and base + k <= len(corner):
+        following[base + k - 1] = first
+    outlines.n_sides[w] = k
+    outlines.used[0] = base + k
 
 
 @inline
@@ -261,6 +324,34 @@ def _is_in_cell(N: Any, m: int, dots: Dots, spot: Spot, over: float, du: float, 
             if a * over * du + b * over * dv > 0.5 * (a * a + b * b):
                 return False
     return True
+
+
+@inner
+def _star_at_border(
+    N: Any, S: Any, m: int, is_packed: bool, n: int, first_edge: int, pads: Pads
+) -> int:
+    """Put what lies beyond a cell's sides into S; return how many, 0 if it cannot be kept."""
+    out, count = pads.out, ZERO
+    if n == 0 and not is_packed:
+        return int(ZERO)
+    for s in range(n if n > 0 else m):
+        if n > 0:
+            j = int(out[s, 4])
+            if out[s, 5] != 0.0 or j == NOWHERE:
+                return int(ZERO)
+            if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
+                continue
+        else:
+            j = get(N, s)
+            if j < 0:
+                j -= first_edge
+        if count + 3 > LANES:
+            return int(ZERO)
+        put(S, count, np.int32(j))
+        count += 1
+    for k in range(2):
+        put(S, count + k, get(S, k))
+    return int(count)
 
 
 @inline

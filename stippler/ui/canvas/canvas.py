@@ -17,7 +17,7 @@ from stippler.camera import Camera, Size
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.preview import Preview
 from stippler.editor.session import Session
-from stippler.editor.tools.toolbox import Chosen
+from stippler.editor.tools.selection import Selection
 from stippler.ui.canvas.lens import MARGIN, Glass
 from stippler.ui.canvas.patch import Patch
 from stippler.ui.look import Look
@@ -49,6 +49,7 @@ class Canvas:
         self._drawn: object = None
         self._uploaded: object = None
         self._edited: Document | None = None  # whose dots are on the GPU
+        self._cursor = 0  # how far its changes are
         self._selected: NDArray[np.int64] = np.empty(0, np.int64)
         self._lens: LensPass | None = None  # with the first look through it
         self._glass: Glass | None = None  # of this frame
@@ -96,7 +97,7 @@ class Canvas:
     def draw(
         self,
         session: Session,
-        selection: Chosen,
+        selection: Selection,
         camera: Camera,
         look: Look,
         preview: Preview | None,
@@ -124,7 +125,7 @@ class Canvas:
     def _draw_page(
         self,
         session: Session,
-        selection: Chosen,
+        selection: Selection,
         camera: Camera,
         look: Look,
         preview: Preview | None,
@@ -193,7 +194,9 @@ class Canvas:
             self._made = Renderer(self._ctx)
         return self._made
 
-    def _upload(self, renderer: Renderer, session: Session, selection: Chosen, page: Page) -> None:
+    def _upload(
+        self, renderer: Renderer, session: Session, selection: Selection, page: Page
+    ) -> None:
         """Bring what has changed since the last call to the GPU."""
         content = _content(session, selection)
         if content == self._uploaded:
@@ -208,8 +211,9 @@ class Canvas:
             renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
         self._uploaded, self._edited = content, document
 
-    def _upload_edited(self, renderer: Renderer, document: Document, selection: Chosen) -> None:
-        changed, selected = document.take_changed(), selection.mask(document)
+    def _upload_edited(self, renderer: Renderer, document: Document, selection: Selection) -> None:
+        cursor = self._cursor if document is self._edited else 0
+        changed, selected = document.changes.since(cursor), selection.mask(document)
         dots, rows = document.dots, changed.rows
         if document is not self._edited or rows is None or renderer.n_dots == 0:
             renderer.set_dots(dots, selected)
@@ -222,7 +226,7 @@ class Canvas:
                 renderer.update_dots(dots, rows, selected)
             if changed.places:
                 renderer.set_positions(dots.position_mm, dots.radius_mm)
-        self._selected = selection.ids
+        self._selected, self._cursor = selection.ids, changed.cursor
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
         if self._texture is None or self._texture.size != size_px:
@@ -248,7 +252,7 @@ class Canvas:
             self._made.release()
 
 
-def _content(session: Session, selection: Chosen) -> tuple[int, int, int]:
+def _content(session: Session, selection: Selection) -> tuple[int, int, int]:
     """Return what tells one state of the dots from another."""
     edited = session.document.revision if session.document is not None else -1
     return session.revision, edited, selection.revision
