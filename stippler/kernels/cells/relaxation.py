@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from stippler.kernels.cells.border import (
+    NOWHERE,
     border_distance,
     free_share,
     gather_edges,
@@ -51,6 +52,7 @@ from stippler.kernels.cells.voronoi import (
 from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, inner, merged
 from stippler.kernels.machine.simd import (
     BUFFER,
+    LANES,
     get,
     moments_of,
     put,
@@ -60,8 +62,8 @@ from stippler.kernels.machine.simd import (
     store_lanes,
 )
 
-INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
-"""What a cell is: bounded by dots alone; by a border as well; not computed."""
+INNER, RIM, TOO_MANY_CORNERS, KEPT = 0, 1, 2, 3
+"""What a cell is: bounded by dots alone; near a border; not computed; near a border, and kept."""
 
 
 def relax_dots(
@@ -111,10 +113,12 @@ def _relax(
     pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
+    S = stack_ints(BUFFER)
     for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
         put(N, k, np.int32(0))
+        put(S, k, np.int32(0))
     for w in range(start, stop):
         i = w if is_all else which[w]
         x, y = dots.x[i], dots.y[i]
@@ -140,7 +144,14 @@ def _relax(
             is_rim = is_rim or get(N, k) < 0
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
-            _keep_star(N, m if is_packed else ZERO, i, stars)
+            n_star = ZERO
+            if is_rim and grid.whole[c, 5] == 1:
+                n_star = _star_at_border(N, S, m, is_packed, n, grid.whole[c, 4], pads)
+            if n_star >= 3:
+                moves.kind[i] = KEPT
+                _keep_star(S, n_star, i, stars)
+            else:
+                _keep_star(N, m if is_packed else ZERO, i, stars)
         if is_fixed:
             continue
         if len(outlines.n_sides):
@@ -313,6 +324,34 @@ def _is_in_cell(N: Any, m: int, dots: Dots, spot: Spot, over: float, du: float, 
             if a * over * du + b * over * dv > 0.5 * (a * a + b * b):
                 return False
     return True
+
+
+@inner
+def _star_at_border(
+    N: Any, S: Any, m: int, is_packed: bool, n: int, first_edge: int, pads: Pads
+) -> int:
+    """Put what lies beyond a cell's sides into S; return how many, 0 if it cannot be kept."""
+    out, count = pads.out, ZERO
+    if n == 0 and not is_packed:
+        return int(ZERO)
+    for s in range(n if n > 0 else m):
+        if n > 0:
+            j = int(out[s, 4])
+            if out[s, 5] != 0.0 or j == NOWHERE:
+                return int(ZERO)
+            if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
+                continue
+        else:
+            j = get(N, s)
+            if j < 0:
+                j -= first_edge
+        if count + 3 > LANES:
+            return int(ZERO)
+        put(S, count, np.int32(j))
+        count += 1
+    for k in range(2):
+        put(S, count + k, get(S, k))
+    return int(count)
 
 
 @inline
