@@ -170,7 +170,7 @@ def pulse_density(
     image : path, Pillow image or array
         As for `stipple`.
     dots : int
-        How many; met within 1 %.
+        How many.
     tone, growth, start, seed
         As for `stipple`.
     area : shapely Polygon or MultiPolygon, or (m, 2) array, px, optional

@@ -133,6 +133,21 @@ class Compartments:
             self._refuse(points, outside, shape_of_dot)
         return found
 
+    def contain(
+        self, points: NDArray[np.float64], compartment: NDArray[np.int32]
+    ) -> NDArray[np.bool_]:
+        """Tell which points lie in the compartment named for each, or on its border."""
+        box = self.box[compartment]
+        inside: NDArray[np.bool_] = np.logical_and.reduce(
+            [*(points >= box[:, :2]).T, *(points <= box[:, 2:]).T]
+        )
+        asked = np.flatnonzero(inside & (self.kind[compartment] == POLYGON))
+        for c in np.unique(compartment[asked]):
+            mine = asked[compartment[asked] == c]
+            shapely.prepare(self.polygons[c])
+            inside[mine] = shapely.intersects_xy(self.polygons[c], *points[mine].T)
+        return inside
+
     def _check_numbers(self, shape_of_dot: NDArray[np.int32]) -> None:
         last = int(self.shape_of[-1])
         bad = np.flatnonzero((shape_of_dot < 0) | (shape_of_dot > last))

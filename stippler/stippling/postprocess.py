@@ -95,7 +95,7 @@ def even_rim(points: NDArray[np.float64], raster: PageRaster, give: float) -> ND
         which, inwards = band[near], inwards[near]
         asked = np.concatenate(([0.0], np.cumsum(edge, dtype=np.float64)))
         even_along(points[which, 1 - axis], inwards, radii[near], asked, line, give)
-        inwards = np.maximum(inwards, 1e-9 * size)
+        inwards = np.clip(inwards, 1e-9 * size, (1.0 - 1e-9) * size)
         points[which, axis] = size - inwards if far else inwards
     return points
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.cells import Cells
+from stippler.stippling.cells import Cells, Redirect
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
 from stippler.stippling.tessellation import Tessellation
@@ -135,15 +135,24 @@ class Relaxation:
         """How many cells the last step could not carry over from the one before."""
         return self._cells.n_failed
 
-    def step(self, cancel: Cancel = None) -> StepReport:
+    def step(self, cancel: Cancel = None, redirect: Redirect | None = None) -> StepReport:
         """Move every free dot once.
+
+        Parameters
+        ----------
+        cancel : callable or threading.Event, optional
+        redirect : callable, optional
+            Called with where dots are and where the step would take them, (n, 2) mm each, in the
+            order given, once all centroids are known; returns where they shall go instead. Fixed
+            dots stay; so does one that would be sent out of its compartment. By Lloyd's method
+            only.
 
         Returns
         -------
         StepReport
             Zeros if `cancel` came before the end; then nothing has moved.
         """
-        report = self._step(_as_question(cancel))
+        report = self._step(_as_question(cancel), redirect)
         return report or StepReport(0.0, 0.0, 0)
 
     def run(
@@ -152,6 +161,7 @@ class Relaxation:
         tolerance_mm: float = 0.0,
         cancel: Cancel = None,
         progress: Callable[[int, StepReport], None] | None = None,
+        redirect: Redirect | None = None,
     ) -> RunReport:
         """Take steps until enough, until dots move less than a tolerance, or until cancelled.
 
@@ -164,11 +174,13 @@ class Relaxation:
             Asked many times a step; the step under way is dropped.
         progress : callable, optional
             Called after each step with the number of steps done and the step's report.
+        redirect : callable, optional
+            As for `step`.
         """
         asked = _as_question(cancel)
         steps: list[StepReport] = []
         for i in range(iterations):
-            report = self._step(asked)
+            report = self._step(asked, redirect)
             if report is None:
                 return RunReport("cancelled", tuple(steps))
             steps.append(report)
@@ -198,10 +210,12 @@ class Relaxation:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""
         return float(self._cells.measure(weighted=False)[:, 4].sum())
 
-    def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
+    def _step(
+        self, cancel: Callable[[], bool] | None, redirect: Redirect | None = None
+    ) -> StepReport | None:
         if self._method != "lloyd":
             return self._step_by_neighbours()
-        gone = self._cells.step(cancel)
+        gone = self._cells.step(cancel, redirect)
         if gone is None:
             return None
         n_free = len(self) - int(np.count_nonzero(self._fixed))
