@@ -41,7 +41,7 @@ SLACK = 0.5
 """How far, in grid cells, dots may go before they are sorted anew."""
 
 _NO_ROWS = np.empty(0, np.int32)
-_NO_CELLS = np.empty((0, 5))
+_NO_CELLS = np.empty((0, 6))
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 NO_OUTLINES = Outlines(np.empty((0, 2)), _NO_ROWS, _NO_ROWS, _NO_ROWS, np.zeros(1, np.int64))
@@ -137,7 +137,7 @@ class Cells:
     def measure(self, weighted: bool) -> Floats:
         """Return mass, centroid from the dot, area, second moment of cells, in the order given."""
         self._sort(self._has_stars)
-        cells = np.zeros((self.n, 5))
+        cells = np.zeros((self.n, 6))
         rows = np.arange(self.n, dtype=np.int32)
         self._relax(rows, False, self._new_moves(), cells, weighted, _NO_STARS)
         out = np.empty_like(cells)
@@ -150,7 +150,7 @@ class Cells:
         The dots beyond sides have the numbers they were given in.
         """
         self._sort(self._has_stars)
-        cells, row_of_dot = np.zeros((self.n, 5)), np.empty(self.n, np.int32)
+        cells, row_of_dot = np.zeros((self.n, 6)), np.empty(self.n, np.int32)
         row_of_dot[self.order] = np.arange(self.n, dtype=np.int32)
         found: dict[int, Outlines] = {}
         n_sides = np.zeros(self.n, np.int32)
