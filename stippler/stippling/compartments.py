@@ -77,8 +77,8 @@ class Compartments:
             shape_of += [i] * len(parts)
         if not polygons:
             raise GeometryError("there is no compartment", "polygon", "give at least one polygon")
-        if len(polygons) == 1 and (box := _as_box(polygons[0])) is not None:
-            return cls._of_rectangle(polygons[0], box)
+        if len(polygons) == 1 and (one := _as_box(polygons[0])) is not None:
+            return cls._of_rectangle(polygons[0], one)
         border = BorderEdges.of(polygons)
         first = np.searchsorted(border.compartment, np.arange(len(polygons) + 1)).astype(np.int32)
         box = np.array(shapely.bounds(polygons)).reshape(-1, 4)
