@@ -125,14 +125,17 @@ def _part_of_area(document: Document, k: int, around: Box) -> tuple[list[shapely
     their dots see each other. Cells that reach the frame are not known yet.
     """
     areas = document.drawing.areas
+    box = document.partition.box_of(k)
+    if box is not None and len(areas) == 1:
+        return [_overlap(box, around)], True
     window = shapely.box(*around)
     outline: shapely.Geometry = areas[k].outline_mm
     above = []
-    if k == PAGE_AREA and len(areas) > 1:
+    if k == PAGE_AREA:
         above = [areas[i].outline_mm for i in areas if i != k]
         above = [other for other in above if other.intersects(window)]
-    if document.partition.box_of(k) is not None and not above:
-        return [_polygons(outline.intersection(window))[0]], True
+    if box is not None and not above:
+        return [_overlap(box, around)], True
     if above:
         outline = outline.difference(shapely.unary_union(above))
     out = []
@@ -144,6 +147,10 @@ def _part_of_area(document: Document, k: int, around: Box) -> tuple[list[shapely
             parts = _polygons(shapely.unary_union(parts))
         out += parts
     return out, False
+
+
+def _overlap(a: Box, b: Box) -> shapely.Polygon:
+    return shapely.box(max(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3]))
 
 
 def _polygons(geometry: shapely.Geometry) -> list[shapely.Polygon]:
