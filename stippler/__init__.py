@@ -12,11 +12,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from stippler.api import Drawing, fill, pulse_density, relax, stipple
+    from stippler.api import Drawing, fill, open, pulse_density, relax, stipple
     from stippler.errors import StipplerError
 
 __version__ = "0.1.0"
-__all__ = ["Drawing", "StipplerError", "fill", "pulse_density", "relax", "stipple"]
+__all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
 
 
 def __getattr__(name: str) -> Any:
