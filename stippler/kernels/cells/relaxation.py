@@ -27,6 +27,7 @@ from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
 from stippler.kernels.cells.grid import seen_distance, spot_of
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
 from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
+from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
 from stippler.kernels.cells.tables import (
     F8,
     I4,
@@ -36,6 +37,7 @@ from stippler.kernels.cells.tables import (
     Grid,
     Moves,
     Pads,
+    Spacing,
     Spot,
     Stars,
 )
@@ -65,6 +67,7 @@ INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 def relax_dots(
     start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
     border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
+    spacing: Spacing,
 ) -> None:  # fmt: skip
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
@@ -81,6 +84,8 @@ def relax_dots(
     cells
         Result, by row, unless empty: mass, centroid relative to the dot, second moment of area
         (0 with a density).
+    spacing
+        The rules that dots move by, or none: then they go to their centroids.
     """
     room = border.most_edges + 1
     pads = Pads(
@@ -93,13 +98,16 @@ def relax_dots(
         np.empty((room, 4)),
         np.empty((2 * room + 3 * corner_cap + 8, 4)),
     )
-    _relax(start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, pads)
+    _relax(
+        start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, spacing,
+        pads,
+    )  # fmt: skip
 
 
 @bare_kernel
 def _relax(
     start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
-    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, pads: Pads,
+    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, spacing: Spacing, pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
     for k in range(BUFFER):
@@ -111,7 +119,7 @@ def _relax(
         x, y = dots.x[i], dots.y[i]
         is_fixed = len(dots.fixed) > 0 and dots.fixed[i]
         moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
-        if is_fixed and len(stars.around) == 0:
+        if is_fixed and len(stars.around) == 0 and len(spacing.table) == 0:
             continue
         c = dots.compartment[i]
         spot = spot_of(x, y, c, grid)
@@ -132,9 +140,17 @@ def _relax(
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
             _keep_star(N, m if is_packed else ZERO, i, stars)
+        if is_fixed and len(spacing.table) == 0:
+            continue
+        mass, du, dv = _way_to_centroid(
+            U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads
+        )
+        if len(spacing.table):
+            du, dv = _way_by_rules(
+                U, V, N, m, is_packed, n_border, n, dots, spot, i, c, mass, du, dv, spacing, pads
+            )
         if is_fixed:
             continue
-        du, dv = _way_to_centroid(U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads)
         if n_border:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
             share = free_share(pads.out, n_border, du, dv, margin)
@@ -220,8 +236,8 @@ def _cell_of_dot(
 def _way_to_centroid(
     U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot,
     over: float, i: int, cells: F8, pads: Pads,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return a cell's mass and the way to its centroid, (over-)relaxed; 0 without mass."""
     second, is_whole = 0.0, n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
         area, du, dv = moments_of(U, V, m)
@@ -248,7 +264,29 @@ def _way_to_centroid(
         du, dv = share * du, share * dv
     if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
         du, dv = over * du, over * dv
-    return du, dv
+    return area, du, dv
+
+
+@merged
+def _way_by_rules(
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n_border: int, n: int, dots: Dots, spot: Spot,
+    i: int, c: int, mass: float, du: float, dv: float, spacing: Spacing, pads: Pads,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the way that the rules of spacing take from (du, dv), that to the centroid."""
+    if is_packed and n == 0:
+        area, mu, mv = moments_of(U, V, m)
+        area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
+        ru, rv = rules_in_lanes(U, V, N, ZERO, m, i, spot.x, spot.y, dots, spacing)
+    else:
+        if n == 0:
+            n = m
+            outline_of_cell(pads.cell, m, pads.out)
+        area, mu, mv, _ = sum_area(pads.out, n)
+        ru, rv = rules_at_border(pads, m, n_border, n, i, spot.x, spot.y, dots, spacing)
+    ask(spacing, i, c, area, mass)
+    if not area > 0.0:
+        return 0.0, 0.0
+    return blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
 
 
 @inline
