@@ -14,7 +14,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from imgui_bundle import imgui  # isort: skip - first: glfw then uses its library
 import glfw
 import numpy as np
 
@@ -49,7 +48,6 @@ class _Desk:
     def __init__(self, app: App, gl: Apart) -> None:
         self.app, self.gl = app, gl
         self.host = Host(app.window, app.editor, app.step)
-        self._address = app.window.address
 
     def fill(self, n: int) -> None:
         """Open an empty page and put about so many dots on it."""
@@ -71,12 +69,12 @@ class _Desk:
 
     def move(self, x_px: int, y_px: int) -> None:
         """Move the pointer to a place of the window."""
-        imgui.backends.glfw_cursor_pos_callback(self._address, float(x_px), float(y_px))
+        self.app.window.input.move(float(x_px), float(y_px))
 
     def button(self, down: bool, which: int = glfw.MOUSE_BUTTON_LEFT) -> None:
         """Press a button or let go of it."""
         action = glfw.PRESS if down else glfw.RELEASE
-        imgui.backends.glfw_mouse_button_callback(self._address, which, action, 0)
+        self.app.window.input.button(which, action, 0)
 
     def frame(self) -> tuple[float, float]:
         """Draw a frame for what has happened; return our own share and the whole, ms."""

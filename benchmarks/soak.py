@@ -19,7 +19,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from imgui_bundle import imgui  # isort: skip - first: glfw then uses its library
 import glfw
 import numpy as np
 
@@ -74,14 +73,12 @@ class Hand:
     def __init__(self, app: App, folder: Path, seed: int) -> None:
         self.app, self._folder = app, folder
         self._rng = np.random.default_rng(seed)
-        self._address = app.window.address
         self._at = np.array([500.0, 350.0])
         self._mods = 0
         self._down: set[int] = set()
         self.n_frames, self.acts = 0, Counter[str]()
         self.pictures = _pictures(folder, self._rng)
-        imgui.backends.glfw_window_focus_callback(self._address, 1)
-        imgui.backends.glfw_cursor_enter_callback(self._address, 1)
+        self.app.window.input.focus(True)
         acts: dict[str, tuple[float, Callable[[], None]]] = {
             "move": (60.0, self._move),
             "button": (16.0, self._button),
@@ -125,7 +122,7 @@ class Hand:
             self._at = self._rng.uniform((360, 20), (_SIZE[0], _SIZE[1] - 40))
         else:
             self._at = self._at + self._rng.normal(0, 15, 2)
-        imgui.backends.glfw_cursor_pos_callback(self._address, *map(float, self._at))
+        self.app.window.input.move(*map(float, self._at))
 
     def _button(self) -> None:
         if self._down and self._rng.random() < 0.7:
@@ -136,10 +133,10 @@ class Hand:
 
     def _press(self, which: int, action: int) -> None:
         (self._down.add if action == glfw.PRESS else self._down.discard)(which)
-        imgui.backends.glfw_mouse_button_callback(self._address, which, action, self._mods)
+        self.app.window.input.button(which, action, self._mods)
 
     def _wheel(self) -> None:
-        imgui.backends.glfw_scroll_callback(self._address, 0.0, float(self._rng.normal(0, 2)))
+        self.app.window.input.scroll(0.0, float(self._rng.normal(0, 2)))
 
     def _key(self) -> None:
         self._type(str(self._rng.choice(_KEYS)), self._mods)
@@ -150,14 +147,14 @@ class Hand:
 
     def _type(self, name: str, mods: int) -> None:
         code = getattr(glfw, f"KEY_{name.upper()}")
-        imgui.backends.glfw_key_callback(self._address, code, 0, glfw.PRESS, mods)
+        self.app.window.input.key(code, 0, glfw.PRESS, mods)
         if self._rng.random() < 0.3:
             self.n_frames += self.app.step(0.0)
-        imgui.backends.glfw_key_callback(self._address, code, 0, glfw.RELEASE, mods)
+        self.app.window.input.key(code, 0, glfw.RELEASE, mods)
 
     def _text(self) -> None:
         for sign in self._rng.choice(list("0123456789.-eab"), self._rng.integers(1, 5)):
-            imgui.backends.glfw_char_callback(self._address, ord(str(sign)))
+            self.app.window.input.character(ord(str(sign)))
 
     def _modifier(self) -> None:
         self._mods = int(self._rng.choice([0, *_MOD_BITS]))
@@ -168,21 +165,23 @@ class Hand:
         if marks:
             x0, y0, x1, y1 = marks[self._rng.integers(len(marks))]
             self._at = self._rng.uniform((x0, y0), (x1, y1))
-            imgui.backends.glfw_cursor_pos_callback(self._address, *map(float, self._at))
+            self.app.window.input.move(*map(float, self._at))
             for action in (glfw.PRESS, glfw.RELEASE):
                 self.n_frames += self.app.step(0.0)
                 self._press(glfw.MOUSE_BUTTON_LEFT, action)
 
     def _drop(self) -> None:
         n = 1 if self._rng.random() < 0.9 else 2
-        self.app.window.drop([self.pictures[k] for k in self._rng.choice(5, n, p=_CHANCES)])
+        self.app.window.input.drop(
+            [str(self.pictures[k]) for k in self._rng.choice(5, n, p=_CHANCES)]
+        )
 
     def _new_page(self) -> None:
         self.app.session.new(Page(*map(float, self._rng.uniform(20, 200, 2))))
 
     def _focus(self) -> None:
         for focused in (0, 1):
-            imgui.backends.glfw_window_focus_callback(self._address, focused)
+            self.app.window.input.focus(bool(focused))
 
     def _resize(self) -> None:
         size = self._rng.integers((200, 150), (1400, 900))

@@ -61,13 +61,11 @@ def _open(app: Any) -> None:
 
 def _mover(app: Any) -> Any:
     """Return a call that moves the pointer by a pixel of the strongest lens and draws the frame."""
-    from stippler.editor.events import Moved
-
     at = [400.0]
 
     def frame() -> None:
         at[0] += 8.0 if at[0] < 1200.0 else -800.0
-        app.window._events.append(Moved(at[0], 400.0))
+        app.window.input.move(at[0], 400.0)
         app.editor.step()
         app.window.ctx.finish()
 

@@ -35,15 +35,18 @@ class Drawing(_Drawing):
     notes : tuple of str
         What the drawing falls short of, if anything: parts too dark for its dots, how much and
         where; dots that did not fit.
+    inputs : tuple of Path
+        The files it was made from; `save` writes over none of them.
     """
 
     notes: tuple[str, ...] = ()
+    inputs: tuple[Path, ...] = ()
 
     def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
         """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi)
+        save(self, Path(path), dpi=dpi, inputs=self.inputs)
 
     def _repr_svg_(self) -> str:
         from stippler.files.svg import svg_chunks
@@ -148,6 +151,8 @@ def draw(
         reference, last.position_mm, last.radius_mm, _style(last.radius_mm, plan)
     )
     drawing.notes = notes_on(last)
+    if isinstance(image, str | PathLike):
+        drawing.inputs = (Path(image),)
     return drawing
 
 
@@ -231,7 +236,7 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
 def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
     from PIL import Image
 
-    from stippler.files import picture
+    from stippler.files.read import picture
 
     picture.check_tone(tone)
     if isinstance(image, str | PathLike):

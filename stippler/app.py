@@ -41,6 +41,8 @@ class App:
         Of the window, instead of the one that is kept.
     offscreen : bool
         Without a display, for tests and screenshots.
+    ratio : float
+        Pixels a unit of an offscreen window, as dense screens of some systems have them.
     """
 
     def __init__(
@@ -52,11 +54,12 @@ class App:
         preferences: Preferences | None = None,
         size: tuple[int, int] | None = None,
         offscreen: bool = False,
+        ratio: float = 1.0,
     ) -> None:
         self._garbage = Garbage()
         kept = preferences or Preferences()
         place = Place(size) if size is not None else kept.place
-        self.window = Window("Stippler", place, offscreen=offscreen)
+        self.window = Window("Stippler", place, offscreen=offscreen, ratio=ratio)
         self.worker: Worker[Work] = Worker(self.window.wake)
         self.exporter: Worker[Path] = Worker(self.window.wake)
         self.session = Session(
@@ -87,7 +90,7 @@ class App:
     def close(self) -> None:
         """End the workers, then the window; a file that is being written is finished first."""
         self.worker.close(_FAREWELL_S)
-        self.exporter.close()
+        self.exporter.close(None)  # half a file is worse than a window that stays
         self.editor.close()
         self.window.close()
         self._garbage.close()

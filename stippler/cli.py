@@ -135,7 +135,7 @@ def edit(
     )
     _check_page(tone, width)
     if file is not None:
-        from stippler.files.picture import check_picture
+        from stippler.files.read.picture import check_picture
 
         check_picture(file)  # before a window opens
     from stippler.app import edit as open_editor
@@ -168,7 +168,7 @@ def render(
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
     from stippler.export import check_output
 
-    check_output(output, dpi)
+    check_output(output, dpi, [file])
     plan = _plan(
         n_dots=dots,
         size_range_mm=_size_range(size_range),
@@ -301,7 +301,7 @@ def _size_range(text: str | None) -> tuple[float, float] | None:
 
 def _check_page(tone: str, width_mm: float) -> None:
     from stippler.drawing.drawing import Page
-    from stippler.files.picture import check_tone
+    from stippler.files.read.picture import check_tone
 
     check_tone(tone)
     Page(width_mm, 1.0)

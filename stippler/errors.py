@@ -38,6 +38,10 @@ class TableError(StipplerError):
     """A table of dots that cannot be read."""
 
 
+class DrawingFileError(StipplerError):
+    """A drawing or journal that cannot be read."""
+
+
 class OutputError(StipplerError, OSError):
     """A file that cannot be written."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+from stippler.atomic_write import check_writable, replacing
 from stippler.drawing.drawing import Drawing
 from stippler.errors import OutputError, ParameterError
-from stippler.files.atomic_write import check_writable, replacing
 from stippler.units import px_per_mm
 
 DEFAULT_DPI = 300.0
@@ -23,15 +23,29 @@ def check_ending(path: str | Path) -> str:
     return ending
 
 
-def check_output(path: str | Path, dpi: float = DEFAULT_DPI) -> None:
-    """Raise now what `save` would raise later: a wrong ending, folder or resolution."""
+def check_output(
+    path: str | Path, dpi: float = DEFAULT_DPI, inputs: Iterable[str | Path] = ()
+) -> None:
+    """Raise now what `save` would raise later: a wrong ending, folder or resolution.
+
+    Parameters
+    ----------
+    inputs : paths
+        What the drawing is made from; the output may be none of these files, by whatever name.
+    """
     check_ending(path)
     if not (math.isfinite(dpi) and dpi > 0):
         raise ParameterError(f"{dpi:g} is no resolution", "dpi", "give a number above 0")
-    check_writable(path)
+    check_writable(path, inputs)
 
 
-def save(drawing: Drawing, path: str | Path, *, dpi: float = DEFAULT_DPI) -> None:
+def save(
+    drawing: Drawing,
+    path: str | Path,
+    *,
+    dpi: float = DEFAULT_DPI,
+    inputs: Iterable[str | Path] = (),
+) -> None:
     """Write a drawing as SVG, PNG or CSV, whole or not at all.
 
     Parameters
@@ -40,6 +54,8 @@ def save(drawing: Drawing, path: str | Path, *, dpi: float = DEFAULT_DPI) -> Non
         Its ending chooses the format.
     dpi : float
         Pixels an inch of a PNG; ignored for others.
+    inputs : paths
+        What the drawing was made from, which is never written over.
 
     Raises
     ------
@@ -50,7 +66,7 @@ def save(drawing: Drawing, path: str | Path, *, dpi: float = DEFAULT_DPI) -> Non
     DisplayError
         If a PNG is asked for and there is no OpenGL.
     """
-    check_output(path, dpi)
+    check_output(path, dpi, inputs)
     chunks = _WRITERS[check_ending(path)](drawing, dpi)
     with replacing(path) as stream:
         stream.writelines(chunks)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from platformdirs import user_config_path
 
-from stippler.errors import StipplerError
+from stippler.atomic_write import replacing
+from stippler.errors import OutputError, StipplerError
 
 
 def settings_folder() -> Path:
@@ -70,15 +70,8 @@ def write_text(path: Path, text: str) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            os.replace(part, path)
-        except BaseException:
-            os.unlink(part)
-            raise
+        with replacing(path) as stream:
+            stream.write(text.encode())
     except OSError as error:
-        raise StipplerError(
-            f"settings cannot be kept ({error.strerror})", path, "check the folder"
-        ) from error
+        why = error.what if isinstance(error, OutputError) else error.strerror
+        raise StipplerError(f"settings cannot be kept ({why})", path, "check the folder") from error

@@ -13,7 +13,7 @@ from stippler.api import draw
 from stippler.drawing.dots import Dots
 from stippler.drawing.reference import Reference
 from stippler.errors import GeometryError
-from stippler.files.picture import read_picture
+from stippler.files.read.picture import read_picture
 from stippler.files.table import read_csv
 from stippler.stippling.plan import Plan
 

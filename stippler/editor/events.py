@@ -84,8 +84,20 @@ class KeyUp:
 
 
 @dataclass(frozen=True, slots=True)
+class Typed:
+    """Text was typed; what the keyboard's layout, dead keys and input methods make of the keys."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class FocusLost:
     """The window lost the keyboard: keys and buttons held before are to be forgotten."""
+
+
+@dataclass(frozen=True, slots=True)
+class FocusGained:
+    """The window has the keyboard."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +129,9 @@ Event = (
     | Scrolled
     | KeyDown
     | KeyUp
+    | Typed
     | FocusLost
+    | FocusGained
     | Gone
     | Dropped
     | Exposed

@@ -50,9 +50,24 @@ class Exports:
         self._written_mark: object = _NEVER
         self._mark: object = _NEVER
 
-    def start(self, drawing: Drawing, path: Path, dpi: float, document: Document | None) -> None:
-        """Write a drawing that nobody changes; `document` is None where that has other dots."""
-        self._request = self._worker.start(lambda: work.export_drawing(drawing, path, dpi))
+    def start(
+        self,
+        drawing: Drawing,
+        path: Path,
+        dpi: float,
+        document: Document | None,
+        inputs: tuple[Path, ...] = (),
+    ) -> None:
+        """Write a drawing that nobody changes.
+
+        Parameters
+        ----------
+        document : Document or None
+            None where that has other dots.
+        inputs : paths
+            The files that the drawing was made from, which are never written over.
+        """
+        self._request = self._worker.start(lambda: work.export_drawing(drawing, path, dpi, inputs))
         self._mark = _mark(document)
         self._messages.say(f"writing {path.name}")
 

@@ -242,7 +242,8 @@ class Session:
             self.messages.say("there are no dots to export", WARNING)
             return
         shown = self.document if self.position_mm is None else None
-        self.exports.start(self._snapshot(self.drawing), path, dpi, shown)
+        inputs = tuple(source.path for source in (self.source, self._asked) if source)
+        self.exports.start(self._snapshot(self.drawing), path, dpi, shown, inputs)
 
     # --- what the workers did ---------------------------------------------------------------
 

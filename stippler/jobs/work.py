@@ -84,7 +84,7 @@ def stipple_picture(
     """
     if reference is None:
         yield Work(READ)
-        from stippler.files.picture import read_picture
+        from stippler.files.read.picture import read_picture
 
         reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
         yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
@@ -189,11 +189,13 @@ def _ready(lines: list[str]) -> tuple[int, int]:
     return (int(found[1]), int(found[2])) if found else (0, 0)
 
 
-def export_drawing(drawing: Drawing, path: Path, dpi: float) -> Iterator[Path]:
-    """Write a drawing to a file; yield its path when it is there."""
+def export_drawing(
+    drawing: Drawing, path: Path, dpi: float, inputs: tuple[Path, ...] = ()
+) -> Iterator[Path]:
+    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there."""
     from stippler.export import save
 
-    save(drawing, path, dpi=dpi)
+    save(drawing, path, dpi=dpi, inputs=inputs)
     yield path
 
 

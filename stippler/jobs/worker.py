@@ -109,8 +109,8 @@ class Worker(Generic[Result]):
             update, self._update = self._update, None
             return update
 
-    def close(self, timeout_s: float = 5.0) -> bool:
-        """Stop the job and end the thread; return whether it ended in time."""
+    def close(self, timeout_s: float | None = 5.0) -> bool:
+        """Stop the job and end the thread; return whether it ended in time. None waits for it."""
         with self._changed:
             self._closed = self._stop = True
             self._paused, self._pending = False, None

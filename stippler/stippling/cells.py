@@ -13,7 +13,7 @@ from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.cells.spacing import MASS, PER_AREA
-from stippler.kernels.cells.tables import Dots, Grid, Moves, Spacing, Stars
+from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.compartments import Compartments
@@ -40,9 +40,10 @@ SLACK = 0.5
 """How far, in grid cells, dots may go before they are sorted anew."""
 
 _NO_ROWS = np.empty(0, np.int32)
-_NO_CELLS = np.empty((0, 4))
+_NO_CELLS = np.empty((0, 5))
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
+NO_OUTLINES = Outlines(np.empty((0, 2)), _NO_ROWS, _NO_ROWS, _NO_ROWS, np.zeros(1, np.int64))
 _NO_WANTS = np.empty((0, 3))
 LLOYD = Spacing(_NO_WANTS, _NO_WANTS, np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(10))
 """No rules: dots go to the centroids of their cells."""
@@ -141,9 +142,9 @@ class Cells:
         return new.gone
 
     def measure(self, weighted: bool) -> Floats:
-        """Return mass, centroid from the dot and second moment of cells, in the order given."""
+        """Return mass, centroid from the dot, area, second moment of cells, in the order given."""
         self._sort(self._has_stars)
-        cells = np.zeros((self.n, 4))
+        cells = np.zeros((self.n, 5))
         rows = np.arange(self.n, dtype=np.int32)
         rules, self.rules = self.rules, LLOYD
         self._relax(rows, False, self._new_moves(), cells, weighted, _NO_STARS)
@@ -151,6 +152,54 @@ class Cells:
         out = np.empty_like(cells)
         out[self.order] = cells
         return out
+
+    def outline(self, weighted: bool) -> tuple[Outlines, Floats]:
+        """Return the outlines of all cells, in the order given, and what `measure` returns.
+
+        The dots beyond sides have the numbers they were given in.
+        """
+        self._sort(self._has_stars)
+        cells, row_of_dot = np.zeros((self.n, 5)), np.empty(self.n, np.int32)
+        row_of_dot[self.order] = np.arange(self.n, dtype=np.int32)
+        found: dict[int, Outlines] = {}
+        n_sides = np.zeros(self.n, np.int32)
+        new = self._new_moves()
+        dots = self._dots._replace(fixed=np.empty(0, np.bool_))
+
+        def part(start: int, stop: int) -> None:
+            room, cap = 8 * (stop - start) + 64, CORNER_CAP
+            while True:
+                mine = Outlines(
+                    np.empty((room, 2)), np.empty(room, np.int32), np.empty(room, np.int32),
+                    n_sides, np.zeros(1, np.int64),
+                )  # fmt: skip
+                relax_dots(
+                    start, stop, cap, row_of_dot, False, dots, self._table, self.grid.border,
+                    self._field_for(weighted), self.over, new, cells, _NO_STARS, mine, LLOYD,
+                )  # fmt: skip
+                if (new.kind[row_of_dot[start:stop]] == TOO_MANY_CORNERS).any():
+                    cap *= 16
+                elif mine.used[0] > room:
+                    room = int(mine.used[0])
+                else:
+                    break
+            found[start] = mine
+
+        parallel_for(part, self.n, grain=FEW, chunks=8)
+        parts = [found[start] for start in sorted(found)]
+        joined = [
+            np.concatenate([getattr(p, name)[: p.used[0]] for p in parts] or [empty])
+            for name, empty in (("corner", np.empty((0, 2))), ("beyond", _NO_ROWS),
+                                ("following", _NO_ROWS))
+        ]  # fmt: skip
+        is_dot = joined[1] >= 0
+        joined[1][is_dot] = self.order[joined[1][is_dot]]
+        corner, beyond, following = joined
+        used = np.zeros(1, np.int64)
+        return Outlines(corner, beyond, following, n_sides, used), cells[row_of_dot]
+
+    def _field_for(self, weighted: bool) -> Field:
+        return self._field if weighted else running_sums(None)
 
     def _new_moves(self) -> Moves:
         n = self.n
@@ -177,7 +226,7 @@ class Cells:
         cancel: Question = None,
     ) -> bool:
         """Compute cells from nothing; once more, with more room, those of very many corners."""
-        field = self._field if weighted else running_sums(None)
+        field = self._field_for(weighted)
         dots = self._dots
         if len(cells):
             dots = dots._replace(fixed=np.empty(0, np.bool_))
@@ -185,7 +234,7 @@ class Cells:
         while n:
             done = parallel_for(
                 relax_dots, n, cap, which, is_all, dots, self._table, self.grid.border, field,
-                self.over, new, cells, stars, self.rules,
+                self.over, new, cells, stars, NO_OUTLINES, self.rules,
                 grain=GRAIN if is_all else FEW, chunks=8, cancel=cancel,
             )  # fmt: skip
             if not done:

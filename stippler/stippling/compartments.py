@@ -10,9 +10,9 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import MultiPolygon, Polygon
-from shapely.geometry.polygon import orient
 
 from stippler.errors import GeometryError, ParameterError
+from stippler.stippling.border_edges import BorderEdges
 from stippler.stippling.validation import floats
 
 Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
@@ -36,9 +36,13 @@ class Compartments:
         xmin, ymin, xmax, ymax.
     area : (c,) float64
     kind : (c,) int32
-        `RECTANGLE`, whose box is its border and which has no edges, or `POLYGON`.
+        `RECTANGLE`, whose box is its border, or `POLYGON`.
     edges : (e, 4) float64
+        Straight runs are one edge each; those of a rectangle are the sides of least y, most x,
+        most y and least x.
     next_edge, compartment_of_edge : (e,) int32
+    first_edge : (c + 1,) int32
+        Where the edges of each compartment begin.
     """
 
     polygons: list[Polygon]
@@ -49,6 +53,7 @@ class Compartments:
     edges: NDArray[np.float64]
     next_edge: NDArray[np.int32]
     compartment_of_edge: NDArray[np.int32]
+    first_edge: NDArray[np.int32]
 
     def __len__(self) -> int:
         return len(self.polygons)
@@ -70,18 +75,24 @@ class Compartments:
             shape_of += [i] * len(parts)
         if not polygons:
             raise GeometryError("there is no compartment", "polygon", "give at least one polygon")
-        polygons = [orient(p) for p in polygons]
-        kind = np.array([POLYGON - _is_rectangle(p) for p in polygons], np.int32)
-        edges, following, owner = _edges_of(polygons, kind)
+        border = BorderEdges.of(polygons)
+        first = np.searchsorted(border.compartment, np.arange(len(polygons) + 1)).astype(np.int32)
+        box = np.array(shapely.bounds(polygons)).reshape(-1, 4)
+        kind = np.full(len(polygons), POLYGON, np.int32)
+        rectangles = _rectangles(border, first)
+        kind[rectangles] = RECTANGLE
+        for side, ends in enumerate(((0, 1, 2, 1), (2, 1, 2, 3), (2, 3, 0, 3), (0, 3, 0, 1))):
+            border.edge[first[rectangles] + side] = box[rectangles][:, ends]
         return cls(
             polygons=polygons,
             shape_of=np.array(shape_of, np.int32),
-            box=np.array(shapely.bounds(polygons)).reshape(-1, 4),
+            box=box,
             area=np.array(shapely.area(polygons)).reshape(-1),
             kind=kind,
-            edges=edges,
-            next_edge=following,
-            compartment_of_edge=owner,
+            edges=border.edge,
+            next_edge=border.next_edge,
+            compartment_of_edge=border.compartment,
+            first_edge=first,
         )
 
     def find(
@@ -202,35 +213,10 @@ def _polygons_of(shape: object, name: str) -> list[Polygon]:
     return list(geometry.geoms) if isinstance(geometry, MultiPolygon) else [geometry]
 
 
-def _is_rectangle(polygon: Polygon) -> bool:
-    if len(polygon.interiors):
-        return False
-    xy = shapely.get_coordinates(polygon)
-    x0, y0, x1, y1 = polygon.bounds
-    on = [xy[:, 0] == x0, xy[:, 0] == x1, xy[:, 1] == y0, xy[:, 1] == y1]
-    flat = np.zeros(len(xy) - 1, np.bool_)
-    for side in on:
-        flat |= side[:-1] & side[1:]
-    return bool(flat.all())
-
-
-def _edges_of(
-    polygons: list[Polygon], kind: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
-    edges, following, owner, n = [np.empty((0, 4))], [np.empty(0, np.int32)], [], 0
-    for c, polygon in enumerate(polygons):
-        if kind[c] == RECTANGLE:
-            continue
-        for ring in (polygon.exterior, *polygon.interiors):
-            xy = shapely.get_coordinates(ring)
-            xy = xy[np.r_[True, (np.diff(xy, axis=0) != 0.0).any(axis=1)]]
-            m = len(xy) - 1
-            edges.append(np.hstack([xy[:-1], xy[1:]]))
-            following.append(n + (np.arange(1, m + 1, dtype=np.int32) % m))
-            owner += [c] * m
-            n += m
-    return (
-        np.ascontiguousarray(np.concatenate(edges)),
-        np.concatenate(following).astype(np.int32),
-        np.array(owner, np.int32),
-    )
+def _rectangles(border: BorderEdges, first: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Return the compartments whose border is four sides along the axes."""
+    four = np.flatnonzero(np.diff(first) == 4)
+    edge = border.edge[first[four][:, None] + np.arange(4)]
+    along = (edge[:, :, :2] == edge[:, :, 2:]).any(axis=2).all(axis=1)
+    found: NDArray[np.intp] = four[along]
+    return found

@@ -16,11 +16,14 @@ from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
+from stippler.stippling.spacing import METHODS, Rules, Wanted
+from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.validation import floats, whole
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 
-METHODS = ("lloyd", "delaunay-mean", "springs")
+AT_REST = 0.005
+"""Largest move of a step, in mean spacings, at which dots spaced by the rules have come to rest."""
 
 Cancel = Callable[[], bool] | threading.Event | None
 
@@ -40,7 +43,8 @@ class RunReport:
 
     Attributes
     ----------
-    reason : {"iterations", "tolerance", "cancelled"}
+    reason : {"iterations", "tolerance", "rest", "cancelled"}
+        At rest are dots spaced evenly once hardly any moves.
     """
 
     reason: str
@@ -71,13 +75,18 @@ class Relaxation:
         no mass keeps its place.
     over_relaxation : float
         The share of the way to the centroid that a dot goes, above 0 and below 2.
-    method : {"lloyd", "delaunay-mean", "springs"}
-        The other two are the paper's comparisons.
+    method : {"lloyd", "even", "delaunay-mean", "springs"}
+        "even" spaces dots by rules that leave no rows and come to rest, in proportion to the
+        density; the last two are the paper's comparisons.
+    wanted : Wanted, optional
+        How dense and how large "even" has dots to be by levels of the density.
+    radius_mm : (n,) array_like, optional
+        The dots' own sizes, by which "even" spaces them then.
 
     Raises
     ------
     GeometryError
-        If a compartment is not valid or has no dots, or a dot lies outside.
+        If a compartment is not valid, or a dot lies outside.
 
     Notes
     -----
@@ -96,6 +105,8 @@ class Relaxation:
         over_relaxation: float = 1.0,
         *,
         method: str = "lloyd",
+        wanted: Wanted | None = None,
+        radius_mm: ArrayLike | None = None,
     ) -> None:
         if method not in METHODS:
             raise ParameterError(
@@ -115,10 +126,15 @@ class Relaxation:
         if compartment_of_dot is not None:
             shape_of_dot = _checked(compartment_of_dot, n, np.int32, "compartment_of_dot", 0)
         found = self._parts.find(xy, shape_of_dot)
-        self._refuse_empty(found)
         self._part_coinciding(xy, found)
         self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
+        if method == "even":
+            if wanted is None:
+                values = None if density is None else density.values
+                wanted = Wanted.uniform() if values is None else Wanted.in_proportion(values)
+            own = None if radius_mm is None else _checked(radius_mm, n, np.float64, "radius", 0)
+            self._cells.space_by(wanted, own)
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -129,6 +145,10 @@ class Relaxation:
 
     def __len__(self) -> int:
         return self._cells.n
+
+    def set_rules(self, rules: Rules) -> None:
+        """Change how strictly the next steps of "even" space dots."""
+        self._cells.set_rules(rules)
 
     @property
     def n_failed(self) -> int:
@@ -176,6 +196,8 @@ class Relaxation:
                 progress(i + 1, report)
             if tolerance_mm > 0.0 and report.largest_mm <= tolerance_mm:
                 return RunReport("tolerance", tuple(steps))
+            if self._method == "even" and report.largest_mm <= AT_REST * self._cells.spacing:
+                return RunReport("rest", tuple(steps))
         return RunReport("iterations", tuple(steps))
 
     def cell_areas(self) -> NDArray[np.float64]:
@@ -190,12 +212,16 @@ class Relaxation:
         """Return the (weighted) centroid of each dot's clipped cell, mm, in the order given."""
         return self.points + self._cells.measure(weighted=True)[:, 1:3]
 
+    def tessellation(self, weighted: bool = True) -> Tessellation:
+        """Return all cells, clipped, in the order given; masses by the density if `weighted`."""
+        return Tessellation.of_cells(self._cells, weighted)
+
     def energy(self) -> float:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""
-        return float(self._cells.measure(weighted=False)[:, 3].sum())
+        return float(self._cells.measure(weighted=False)[:, 4].sum())
 
     def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
-        if self._method != "lloyd":
+        if self._method not in ("lloyd", "even"):
             return self._step_by_neighbours()
         gone = self._cells.step(cancel)
         if gone is None:
@@ -222,15 +248,6 @@ class Relaxation:
             float(gone.max(initial=0.0)),
             int(np.count_nonzero(gone)),
         )
-
-    def _refuse_empty(self, compartment_of_dot: NDArray[np.int32]) -> None:
-        shapes = self._parts.shape_of
-        counts = np.bincount(shapes[compartment_of_dot], minlength=int(shapes[-1]) + 1)
-        empty = np.flatnonzero(counts == 0)
-        if len(empty):
-            raise GeometryError(
-                "holds no dots", f"compartment {empty[0]}", "leave it out or give it dots"
-            )
 
     def _part_coinciding(
         self, xy: NDArray[np.float64], compartment_of_dot: NDArray[np.int32]
@@ -294,8 +311,9 @@ def relax(
     density : (h, w) array_like, callable or DensityField, optional
         Weight: an array over the polygon's bounding box, row 0 at its least y, or a function
         of arrays x and y.
-    method : {"lloyd", "delaunay-mean", "springs"}
-        The other two are for comparison: they know no border and no density.
+    method : {"lloyd", "even", "delaunay-mean", "springs"}
+        "even" leaves no rows and comes to rest; dots are as dense as the density says. The last
+        two are for comparison: they know no border and no density.
     compartment_of_dot, tolerance_mm, over_relaxation
         See `Relaxation`.
 

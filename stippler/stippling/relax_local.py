@@ -13,14 +13,15 @@ from stippler.kernels.cells.tables import Dots, Grid, Moves, Stars
 from stippler.kernels.dots.bucket_grid import find_in_circle, place_dots
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
-from stippler.stippling.cells import CORNER_CAP, LLOYD
+from stippler.stippling.cells import CORNER_CAP, LLOYD, NO_OUTLINES
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
 
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
-_NO_CELLS = np.empty((0, 4))
+_NO_CELLS = np.empty((0, 5))
+_NO_NODES = np.empty((0, 4))
 
 
 class LocalRelaxation:
@@ -103,7 +104,7 @@ class LocalRelaxation:
     def cell_areas(self, dots: ArrayLike) -> NDArray[np.float64]:
         """Return the areas of the cells of dots, (k,), mm²."""
         slots = self._slot_of_dot[np.asarray(dots, np.int32)]
-        cells = np.zeros((len(self._moves.x), 4))
+        cells = np.zeros((len(self._moves.x), 5))
         self._compute(slots, cells)
         return np.array(cells[slots, 0])
 
@@ -153,7 +154,7 @@ class LocalRelaxation:
         while len(slots):
             parallel_for(
                 relax_dots, len(slots), cap, slots, False, self._dots, self._table,
-                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, LLOYD,
+                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, NO_OUTLINES, LLOYD,
                 grain=128, chunks=2,
             )  # fmt: skip
             slots = slots[self._moves.kind[slots] == TOO_MANY_CORNERS]
@@ -205,7 +206,7 @@ class LocalRelaxation:
         self._dots = Dots(self._xs, self._ys, np.zeros(0, np.bool_), self._compartment_of_slot)
         cell_start = (np.arange(n_cells + 1) * self._room).astype(np.int32)
         self._table = Grid(
-            self._grid.real, self._grid.whole, cell_start, 0.0, np.empty(0, np.int32), _NO_CELLS
+            self._grid.real, self._grid.whole, cell_start, 0.0, np.empty(0, np.int32), _NO_NODES
         )
         self._moves = Moves(
             np.empty(n_slots), np.empty(n_slots), np.empty(n_slots), np.zeros(n_slots, np.uint8),

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
+from stippler.editor.batches import PointerOwner, parts_of
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -62,6 +63,7 @@ _LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
+_REST_FRAMES = 2  # of the panels, until what one part of a batch has opened is there for the next
 
 
 class Editor:
@@ -90,6 +92,7 @@ class Editor:
         self.look.begin()
         self.view = View(BLANK, window.size_px)
         self.pointer = Pointer(self.view)
+        self._owner = PointerOwner()
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
@@ -138,9 +141,12 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
-        if self.session.poll():
+        if self._poll():
             self._schedule.note_result()
-        if not self._schedule.due(began) or 0 in self._window.size_px:
+        if 0 in self._window.size_px:
+            self._take_unseen(events)
+            return False
+        if not self._schedule.due(began):
             return False
         self._frame(events, began)
         moving = self.view.moving or self.painting.toolbox.is_timed
@@ -148,6 +154,25 @@ class Editor:
         self._plan_wakes()
         self.n_frames += 1
         return True
+
+    def _poll(self) -> bool:
+        """Take the workers' results; one that cannot be taken ends the job, not the editor."""
+        try:
+            return self.session.poll()
+        except Exception as error:  # noqa: BLE001 - the drawing as it is lives on
+            self._report(error, "taking a result")
+        try:
+            self.session.stop()
+        except Exception as error:  # noqa: BLE001 - told; the job is let go of
+            self._report(error, "ending the work")
+        return True
+
+    def _take_unseen(self, events: list[Event]) -> None:
+        """Take what happens to a window that is minimised: nothing is drawn, nothing is lost."""
+        for event in events:
+            self._take_guarded(event, for_panels=self.gui.feed(event))
+        if self.popups.filing.guard.is_open:
+            self._window.restore()
 
     def close(self) -> None:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
@@ -162,11 +187,12 @@ class Editor:
     def _frame(self, events: list[Event], now_s: float) -> None:
         dt_s, self._last_s = min(now_s - self._last_s, 0.1), now_s
         self._rate.tick(now_s)
-        self.gui.dress(self.look)
-        self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
-        failure = self.gui.frame(lambda: self._draw_ui(events, dt_s))
-        if failure is not None:
-            self._report(failure, "the window")
+        *earlier, last = parts_of(events) or [[]]
+        for part in earlier:
+            self._build(part, 0.0)
+            for _ in range(_REST_FRAMES):
+                self._build([], 0.0)
+        self._build(last, dt_s)
         with self._window.frame() as screen:
             try:
                 self.canvas.draw(
@@ -187,13 +213,24 @@ class Editor:
         if self.popups.filing.note_opened():
             self._keep()
 
-    def _draw_ui(self, events: list[Event], dt_s: float) -> None:
+    def _build(self, events: list[Event], dt_s: float) -> None:
+        """Build the window's panels once and take events meanwhile; nothing is drawn yet."""
+        self.gui.dress(self.look)
+        fed = [(event, self.gui.feed(event)) for event in events]
+        self.widgets = Widgets(
+            self.look.theme, self.gui.fonts, self.gui.scale, self.gui.escape_level
+        )
+        failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
+        if failure is not None:
+            self._report(failure, "the window")
+
+    def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
         self._guarded("the menu", lambda: draw_menu(self.widgets, self.commands, recent))
         area = self._layout.draw(self.gui.scale)
         self._place(area)
-        for event in events:
-            self._take(event)
+        for event, for_panels in events:
+            self._take_guarded(event, for_panels=for_panels)
         self.lens_key.let_pass()
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
@@ -284,15 +321,23 @@ class Editor:
 
     def _place(self, area: Rect) -> None:
         """Tell view and pointer where the canvas is."""
-        self._ratio = ratio = imgui.get_io().display_framebuffer_scale.x or 1.0
+        self._ratio = ratio = self._window.ratio[0]
         self.pointer.place((area[0] * ratio, area[1] * ratio))
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
 
-    def _take(self, event: Event) -> None:
+    def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
+        """Take an event; what fails is told, and those after it are taken as ever."""
+        try:
+            self._take(event, for_panels=for_panels)
+        except Exception as error:  # noqa: BLE001 - a faulty handler must not lose a release
+            self._report(error, "the input")
+
+    def _take(self, event: Event, *, for_panels: bool) -> None:
         """Bring one event to whom it concerns."""
         self.lens_key.take(event)
+        elsewhere = self._owner.is_panel(event, over_panel=self.gui.wants_pointer)
         match event:
             case Scrolled() if self.lens_key.is_held:
                 self.lens_key.strengthen(event.dy)
@@ -300,25 +345,25 @@ class Editor:
                 self.popups.filing.drop(paths)
             case CloseAsked():
                 self.popups.filing.quit()
-            case KeyDown() if self.popups.take(event) or self.gui.wants_keys:
-                pass
             case KeyDown(key="escape") if self.shaping.let_go():
                 imgui.internal.clear_active_id()
+            case KeyDown() if self.popups.take(event) or for_panels:
+                pass
             case KeyDown() if self.painting.is_busy or self.painting.leave(event):
                 self._paint(event)
             case KeyDown() if self.commands.take(event):
                 pass
-            case _ if self._paint(event):
+            case _ if self._paint(event, elsewhere=elsewhere):
                 pass
             case _:
-                self.pointer.take(event, elsewhere=self.gui.wants_pointer)
+                self.pointer.take(event, elsewhere=elsewhere)
 
-    def _paint(self, event: Event) -> bool:
-        """Offer an event to the brush; what it has taken hold of it keeps over panels, too."""
-        free = isinstance(self.pointer.state, Idle) and not self.gui.wants_pointer
+    def _paint(self, event: Event, *, elsewhere: bool = False) -> bool:
+        """Offer an event to the brush; `elsewhere` is whether a panel has the pointer."""
         if isinstance(event, Moved | Pressed | Released | Scrolled):
-            held = self.painting.is_busy and not isinstance(event, Pressed)  # that is the panel's
-            if not (free or held):
+            free = isinstance(self.pointer.state, Idle) and not elsewhere
+            follows = self.painting.is_busy and isinstance(event, Moved)  # an open polygon does
+            if not (free or follows):
                 return False
             event = self.pointer.local(event)
         return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)

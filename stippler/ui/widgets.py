@@ -25,6 +25,8 @@ class Widgets:
 
     Attributes
     ----------
+    escape_level : int
+        How many popups were open when Esc was pressed in this frame; 0 if it was not.
     marks : dict
         Label to (x0, y0, x1, y1), in ImGui's coordinates, of what was drawn this frame.
     rooms : dict
@@ -34,6 +36,7 @@ class Widgets:
     theme: Theme
     fonts: Fonts
     scale: float
+    escape_level: int = 0
     marks: dict[str, Rect] = field(default_factory=dict)
     rooms: dict[str, Rect] = field(default_factory=dict)
 
@@ -115,6 +118,24 @@ class Widgets:
     def packed(colour: Colour, alpha: float = 1.0) -> int:
         """Return a colour as draw lists take it."""
         return int(imgui.color_convert_float4_to_u32((*colour, alpha)))
+
+    # --- keys of the popup that is drawn ------------------------------------------------------
+
+    def escaped(self) -> bool:
+        """Return whether Esc is pressed in the popup that is drawn, with none above it."""
+        context = imgui.get_current_context()
+        assert context is not None
+        return self.escape_level == context.begin_popup_stack.size() > 0
+
+    def entered(self) -> bool:
+        """Return whether Enter is pressed there, and no other control has the focus."""
+        context = imgui.get_current_context()
+        assert context is not None
+        pressed = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(
+            imgui.Key.keypad_enter
+        )
+        is_topmost = context.open_popup_stack.size() == context.begin_popup_stack.size()
+        return pressed and is_topmost and not context.nav_cursor_visible and not context.active_id
 
     # --- controls ---------------------------------------------------------------------------
 

@@ -50,10 +50,13 @@ def test_every_edge_is_listed_wherever_it_touches(seed, n_dots):
         assert border.clear[j * nx + i] == rings.min()
 
 
-def test_a_rectangle_has_no_edges():
+def test_a_rectangle_is_its_box():
     parts = Compartments.of([box(0, 0, 2, 1), Polygon([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0.5)])])
     assert parts.kind.tolist() == [0, 0]
-    assert len(parts.edges) == 0
+    sides = [(0, 0, 1, 0), (1, 0, 1, 1), (1, 1, 0, 1), (0, 1, 0, 0)]
+    np.testing.assert_array_equal(parts.edges[4:], sides)
+    np.testing.assert_array_equal(parts.next_edge, [1, 2, 3, 0, 5, 6, 7, 4])
+    assert len(DotGrid.over(parts, np.array([9, 9])).border.edge_of_slot) == 0
     cut = Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (0, 0.5)])
     assert Compartments.of(cut).kind.tolist() == [1]
 

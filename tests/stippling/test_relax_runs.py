@@ -338,7 +338,6 @@ BAD = [
     (Polygon([(0, 0), (1, 0), (2, 0)]), "compartment 0: (is not valid|has no area)"),
     ([box(0, 0, 1, 1), Polygon()], "compartment 1: is empty"),
     ([box(0, 0, 1, 1), Polygon([(2, 0), (3, 1), (3, 0), (2, 1)])], "compartment 1: is not valid"),
-    ([box(0, 0, 1, 1), box(5, 5, 6, 6)], "compartment 1: holds no dots"),
     ([], "no compartment"),
     ("square", "no polygon"),
 ]
@@ -350,6 +349,14 @@ def test_bad_polygons(polygon, message):
         Relaxation([[0.5, 0.5]], polygon)
 
 
+def test_compartments_without_dots():
+    squares = [box(0, 0, 1, 1), box(5, 5, 6, 6)]
+    engine = Relaxation([[0.2, 0.5]], squares)
+    engine.step()
+    np.testing.assert_allclose(engine.points, [[0.5, 0.5]])
+    assert len(relax(np.empty((0, 2)), squares)) == 0
+
+
 def test_bad_dots():
     square = box(0, 0, 1, 1)
     with pytest.raises(GeometryError, match=r"compartment 0: dot 1 at \(2, 0\.5\) lies outside"):
@@ -358,8 +365,6 @@ def test_bad_dots():
         Relaxation([[0.5, 0.5], [5.5, 5.5]], [square, box(5, 5, 6, 6)], compartment_of_dot=[1, 1])
     with pytest.raises(GeometryError, match=r"dot 0.*not finite"):
         Relaxation([[np.nan, 0.5]], square)
-    with pytest.raises(GeometryError, match="holds no dots"):
-        Relaxation(np.empty((0, 2)), square)
     with pytest.raises(ParameterError, match="fixed"):
         Relaxation([[0.5, 0.5]], square, fixed=[True, False])
     with pytest.raises(ParameterError, match="over-relaxation"):

@@ -336,7 +336,7 @@ def test_what_no_hand_has_touched_is_closed_unasked(desk, picture: Path) -> None
     desk.host.click("Start")  # anew, in place of the dots that are there
     desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
     assert not desk.app.session.unsaved
-    desk.app.window.press_close()
+    desk.app.window.input.close()
     desk.host.settle()
     assert desk.app.window.wants_to_close
 
@@ -356,7 +356,7 @@ def test_closing_asks_however_often(desk, picture: Path) -> None:
     left = painted(desk, picture)
     assert desk.app.window.title == "disc.png* – Stippler"
     for _ in range(3):
-        desk.app.window.press_close()
+        desk.app.window.input.close()
         desk.host.settle()
         desk.host.key("q", ctrl=True)
         assert desk.host.shown("Discard")
@@ -376,11 +376,11 @@ def test_closing_with_a_dialog_open_asks_in_its_place(desk, picture: Path) -> No
     painted(desk, picture)
     desk.host.key("o", ctrl=True)
     assert desk.host.shown("path")
-    desk.app.window.press_close()
+    desk.app.window.input.close()
     desk.host.settle()
     assert not desk.host.shown("path")
     desk.host.click("Export…")
-    desk.app.window.press_close()  # the question is being answered
+    desk.app.window.input.close()  # the question is being answered
     desk.host.settle()
     assert desk.host.shown("path")
     assert not desk.app.window.wants_to_close

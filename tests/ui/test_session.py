@@ -14,7 +14,7 @@ from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.drawing.reference import Reference
 from stippler.editor.messages import ERROR, INFO, WARNING
 from stippler.editor.session import Session
-from stippler.errors import PictureError
+from stippler.errors import OutputError, PictureError
 from stippler.jobs.work import Source, Work
 from stippler.jobs.worker import Update
 from stippler.stippling.plan import Plan
@@ -358,6 +358,22 @@ def test_an_export_in_the_midst_of_a_job_holds_the_dots_that_are_shown(
     stage.session.export(tmp_path / "out.csv", 300.0)
     list(stage.exporter.jobs[0]())
     assert len((tmp_path / "out.csv").read_text().splitlines()) == 1 + 9
+
+
+@pytest.mark.parametrize("name", ["shell.svg", "soft.svg", "hard.svg"])
+def test_an_export_never_writes_over_the_picture(
+    stage: Stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("shell.svg").write_bytes(b"a picture, whatever its name")
+    Path("soft.svg").symlink_to("shell.svg")
+    Path("hard.svg").hardlink_to("shell.svg")
+    stage.session.open(Path("shell.svg"))
+    stage.tell(Work("relax", 1, 20, reference(), dots(9)))
+    stage.session.export(tmp_path / name, 300.0)
+    with pytest.raises(OutputError, match="the very file that is read"):
+        list(stage.exporter.jobs[0]())
+    assert Path("shell.svg").read_bytes() == b"a picture, whatever its name"
 
 
 def test_an_export_that_fails_says_why(stage: Stage, tmp_path: Path) -> None:

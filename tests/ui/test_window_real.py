@@ -288,3 +288,48 @@ def test_no_opengl_is_one_line(picture: Path) -> None:
     (line,) = done.stderr.splitlines()
     assert "OpenGL 3.3" in line
     assert "apt install" in line
+
+
+def test_bursts_from_the_canvas_to_a_panel_and_back(
+    start: Callable[..., Desk], places: dict[str, tuple[float, float]], picture: Path
+) -> None:
+    """Motion, press and release arrive in one batch each, as a pen's tap or xdotool sends them."""
+    desk = start(str(picture), "--dots", "200", "--iterations", "3", "--tone", "linear")
+    until(lambda: desk.title() == "disc.png – Stippler", "the title")
+    until(lambda: desk.has(places["Start"], LIGHT.accent), "the end of the work")
+    desk.focus()
+    corner = (CANVAS[2] - 250, CANVAS[1] + 150)  # white paper
+    desk.xdotool("key", "a")
+    before = desk.ink().sum()
+    burst: list[object] = []
+    for k in range(6):  # a tool's button, then the canvas; every other dot is erased again
+        tool = places["Add a dot"] if k % 2 == 0 else places["Remove a dot"]
+        burst += ["mousemove", *map(round, tool), "click", 1]
+        burst += ["mousemove", corner[0], corner[1] + 40 * (k // 2), "click", 1]
+    burst += ["mousemove", *map(round, places["Add a dot"]), "click", 1]
+    for k in range(3):
+        burst += ["mousemove", corner[0], corner[1] + 40 * k, "click", 1]
+    desk.xdotool(*burst)
+    desk.xdotool("mousemove", corner[0] + 100, corner[1] + 20)
+
+    def dots() -> int:
+        x, y = corner[0] - CANVAS[0], corner[1] - CANVAS[1]
+        column = desk.ink()[:, x - 3 : x + 4].any(axis=1)
+        return sum(bool(column[y + 40 * k - 6 : y + 40 * k + 7].any()) for k in range(3))
+
+    until(lambda: dots() == 3, "the three dots")
+    assert desk.ink().sum() > before
+    desk.xdotool("key", "ctrl+z", "ctrl+z", "ctrl+z")
+    until(lambda: dots() == 0, "the empty corner")
+    desk.xdotool("key", "v", "ctrl+shift+p", "d", "r", "a", "w", "i", "n", "g", "Return")
+    time.sleep(0.5)
+    desk.xdotool("mousemove", *map(round, places["Number"]), "click", 1)
+    desk.xdotool("key", "ctrl+a", "1", "2", "3", "Return")
+    desk.xdotool("key", "ctrl+shift+z", "ctrl+shift+z")
+    until(lambda: dots() == 2, "the dots again")
+    desk.xdotool("mousemove", *map(round, places["Start"]), "click", 1)
+    until(lambda: dots() == 0, "the new dots")
+    desk.focus()
+    desk.xdotool("key", "ctrl+q")
+    _, errors = desk.process.communicate(timeout=_PATIENCE_S)
+    assert (desk.process.returncode, errors) == (0, "")

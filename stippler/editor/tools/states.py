@@ -38,6 +38,7 @@ RESIZE_A_NOTCH = 1.1
 _STILL_PX = 4.0  # a press that moves less is a click
 _DOUBLE_S = 0.35
 _LINE_RADII_PER_S = 20.0
+_STALL_S = 0.1  # a timed brush is given a frame sooner than this, unless the machine stalls
 
 
 class Selection(Protocol):
@@ -129,7 +130,7 @@ def _begun(event: Pressed, desk: Desk) -> ToolState:
         return _begun_selection(event, desk)
     if event.mods.shift:
         return Sizing(event.x_px, event.y_px, desk.brush.radius_mm)
-    return Stroking(desk.stroke(desk.sample(event)))
+    return Stroking(desk.stroke(desk.sample(event)), event.t_s)
 
 
 def _begun_selection(event: Pressed, desk: Desk) -> ToolState:
@@ -159,17 +160,27 @@ def _on_selected(at: Point, desk: Desk) -> bool:
 
 @dataclass(slots=True)
 class Stroking:
-    """The brush is down."""
+    """The brush is down.
+
+    Attributes
+    ----------
+    seen_s : float
+        The time of the last event or frame.
+    lost_s : float
+        How long the machine has stalled since the press: a timed brush does not make up for that.
+    """
 
     stroke: Stroke
+    seen_s: float
+    lost_s: float = 0.0
 
     def take(self, event: Event, desk: Desk) -> ToolState:
         """Follow the pointer until the button comes up, or Escape takes it all back."""
         match event:
             case Moved():
-                self.stroke.follow(desk.sample(event))
+                self.stroke.follow(self._sample(event, desk))
             case Released(button=button) if button == LEFT:
-                sample = desk.sample(event)
+                sample = self._sample(event, desk)
                 self.stroke.commit(sample)
                 return Rest(sample)
             case FocusLost():
@@ -179,6 +190,19 @@ class Stroking:
                 self.stroke.cancel()
                 return Rest()
         return self
+
+    def rest(self, t_s: float) -> None:
+        """Let time go on."""
+        self.stroke.rest(self._at(t_s))
+
+    def _sample(self, event: Moved | Released, desk: Desk) -> PointerSample:
+        return replace(desk.sample(event), t=self._at(event.t_s))
+
+    def _at(self, t_s: float) -> float:
+        """Return how far the stroke's own time has come, which stands still in a stall."""
+        self.lost_s += max(t_s - self.seen_s - _STALL_S, 0.0)
+        self.seen_s = max(t_s, self.seen_s)
+        return t_s - self.lost_s
 
     def cancel(self, desk: Desk) -> None:
         """Take the stroke back."""

@@ -222,7 +222,7 @@ class Toolbox:
         """Let time go on within a stroke."""
         if isinstance(self.state, Stroking):
             try:
-                self.state.stroke.rest(t_s)
+                self.state.rest(t_s)
             except BaseException:
                 self.state = Rest()
                 raise

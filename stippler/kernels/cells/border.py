@@ -1,7 +1,8 @@
 """Cells at the border: the edges near them, their outlines, integrals, and moves kept inside.
 
-An outline is a list of directed segments ``u0, v0, u1, v1`` relative to the dot, the cell on
-their left, those on the compartment's border first.
+An outline is a list of directed segments ``u0, v0, u1, v1, number, ring`` relative to the dot, the
+cell on their left, ring after ring and each in order. `number` is the row of the dot beyond, or
+``-1 - e`` for border edge e.
 """
 
 from __future__ import annotations
@@ -16,6 +17,10 @@ from stippler.kernels.cells.voronoi import cut_cell, reach2_of_cell
 from stippler.kernels.machine.jit import ZERO, inline, inner
 from stippler.kernels.machine.simd import get
 
+NOWHERE = -(1 << 30)
+"""Number of a side that is neither a dot's nor a border's: of what the search has seen so far."""
+
+_CLOSE = 1e-12  # of a cell's reach: what is nearer to a line than this may be on either side of it
 _ROUNDING = 1e-12  # of all that is added and taken away again in a sum
 
 
@@ -53,39 +58,42 @@ def border_distance(edge: F8, near: I4, n_near: int, x: float, y: float) -> floa
 @inner
 def outline_within(
     m: int, border: Border, spot: Spot, ring: int, pads: Pads, n_near: int, stamp: int
-) -> tuple[int, int, float]:
+) -> tuple[int, float]:
     """Outline the dot's piece of the cell within the rings seen; return its reach, squared, too.
 
     A piece that touches the outermost ring's walls reaches as far as they do, which tells the
     caller to look further.
     """
-    cell2 = pads.cell2
-    for r in range(6):
-        for k in range(m):
+    cell2, nowhere = pads.cell2, float(NOWHERE)
+    for k in range(m):
+        for r in range(5):
             cell2[r, k] = pads.cell[r, k]
+        cell2[5, k] = pads.cell[5, k] if pads.cell[5, k] >= 0.0 else nowhere
     n2 = m
     left, top = spot.gx - spot.x, spot.gy - spot.y
     if spot.ix - ring > 0:
-        n2 = cut_cell(cell2, n2, -1.0, 0.0, -(left + (spot.ix - ring) * spot.h), -1.0)
+        n2 = cut_cell(cell2, n2, -1.0, 0.0, -(left + (spot.ix - ring) * spot.h), nowhere)
     if spot.ix + ring < spot.nx - 1:
-        n2 = cut_cell(cell2, n2, 1.0, 0.0, left + (spot.ix + ring + 1) * spot.h, -1.0)
+        n2 = cut_cell(cell2, n2, 1.0, 0.0, left + (spot.ix + ring + 1) * spot.h, nowhere)
     if spot.iy - ring > 0:
-        n2 = cut_cell(cell2, n2, 0.0, -1.0, -(top + (spot.iy - ring) * spot.h), -1.0)
+        n2 = cut_cell(cell2, n2, 0.0, -1.0, -(top + (spot.iy - ring) * spot.h), nowhere)
     if spot.iy + ring < spot.ny - 1:
-        n2 = cut_cell(cell2, n2, 0.0, 1.0, top + (spot.iy + ring + 1) * spot.h, -1.0)
-    near2 = 1e-24 * reach2_of_cell(cell2, n2)
-    n_border, n = outline_piece(n2, spot.x, spot.y, border, pads, n_near, stamp, near2)
+        n2 = cut_cell(cell2, n2, 0.0, 1.0, top + (spot.iy + ring + 1) * spot.h, nowhere)
+    margin = _CLOSE * math.sqrt(reach2_of_cell(cell2, n2)) + 1e-15 * (abs(spot.x) + abs(spot.y))
+    for k in range(n2):
+        cell2[6, k] = margin * math.hypot(cell2[2, k], cell2[3, k])
+    n = outline_piece(n2, spot.x, spot.y, border, pads, n_near, stamp, margin)
     best = 0.0
     out = pads.out
     for s in range(n):
         best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
         best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
-    return n_border, n, best
+    return n, best
 
 
 @inline
 def outline_of_cell(cell: F8, m: int, out: F8) -> None:
-    """Write the outline of a cell that no border cuts."""
+    """Write the outline of a cell that no polygon's border cuts, without numbers."""
     for k in range(m):
         n = k + 1 if k + 1 < m else 0
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = cell[0, k], cell[1, k], cell[0, n], cell[1, n]
@@ -93,10 +101,18 @@ def outline_of_cell(cell: F8, m: int, out: F8) -> None:
 
 @inline
 def outline_of_lanes(U: Any, V: Any, m: int, out: F8) -> None:
-    """Write the outline of a cell in lanes that no border cuts."""
+    """Write the outline of a cell in lanes that no polygon's border cuts, without numbers."""
     for k in range(m):
         n = k + 1 if k + 1 < m else 0
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = get(U, k), get(V, k), get(U, n), get(V, n)
+
+
+@inline
+def put_numbers(N: Any, cell: F8, m: int, is_packed: bool, first_edge: int, out: F8) -> None:
+    """Write the numbers of sides of a cell that no polygon cuts; a box's are border edges."""
+    for k in range(m):
+        j = get(N, k) if is_packed else int(cell[5, k])
+        out[k, 4], out[k, 5] = float(j if j >= 0 else j - first_edge), 0.0
 
 
 @inline
@@ -138,14 +154,16 @@ def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float,
 
 
 @inline
-def free_share(out: F8, n: int, du: float, dv: float, margin: float) -> float:
-    """Return the share of the move (du, dv) that stays clear of the first n segments.
+def free_share(out: F8, n: int, du: float, dv: float, margin: float, is_walls: bool) -> float:
+    """Return the share of the move (du, dv) that stays clear of the n segments, or of its walls.
 
     1 if the straight way ends well inside; else half of the way to the first of them met; 0 if
     even that comes nearer to it than `margin`.
     """
     share = 1.0
     for s in range(n):
+        if is_walls and out[s, 4] >= 0.0:
+            continue
         au, av = out[s, 0], out[s, 1]
         eu, ev = out[s, 2] - au, out[s, 3] - av
         length = math.sqrt(eu * eu + ev * ev)

@@ -4,11 +4,16 @@ The border inside a cell falls into chains, which enter and leave the cell, and 
 wholly within it. A chain has the compartment on its left and hides from the dot what lies on its
 right: the stretch of the cell's rim from where it enters round to where it leaves. The piece is
 the cell without what is hidden by each chain that has the dot on its left and is not itself
-hidden by another. No step asks for exact arithmetic: where rounding confuses two chains, they are
-closer together than rounding, and either answer is right to rounding.
+hidden by another.
+
+Corners of the border on the cell's rim, or nearer to it than `margin`, count as outside. So a wall
+along a side is none, and what touches the piece in a corner alone is no part of it. What remains
+to rounding is where two crossings of the rim lie all but in one place: of one chain its area tells
+their order; of two, either order is right to rounding.
 
 `rim` positions are corner number + fraction of the side after it. `Chain` rows: enter, leave
-(``leave >= enter``, may exceed m), first and last + 1 of its segments in `trace`, state.
+(``leave >= enter``, may exceed m), first and last + 1 of its segments in `trace`, state. Segments
+are ``u0, v0, u1, v1, number``, see `border`.
 """
 
 from __future__ import annotations
@@ -42,8 +47,9 @@ def _clip_edge(
     """
     t0, t1, k0, k1 = 0.0, 1.0, -1, -1
     for k in range(m):
-        da = cell[2, k] * au + cell[3, k] * av - cell[4, k]
-        db = cell[2, k] * bu + cell[3, k] * bv - cell[4, k]
+        c = cell[4, k] - cell[6, k]
+        da = cell[2, k] * au + cell[3, k] * av - c
+        db = cell[2, k] * bu + cell[3, k] * bv - c
         if da > 0.0:
             if db > 0.0:
                 return 1.0, 0.0, -1, -1
@@ -60,7 +66,7 @@ def _clip_edge(
 @inline
 def _is_inside(cell: F8, m: int, u: float, v: float) -> bool:
     for k in range(m):  # noqa: SIM110 - a kernel
-        if cell[2, k] * u + cell[3, k] * v - cell[4, k] > 0.0:
+        if cell[2, k] * u + cell[3, k] * v - (cell[4, k] - cell[6, k]) > 0.0:
             return False
     return True
 
@@ -77,8 +83,9 @@ def _crossing(au: float, av: float, bu: float, bv: float) -> int:
 
 
 @inline
-def _put(trace: F8, n: int, au: float, av: float, bu: float, bv: float) -> int:
+def _put(trace: F8, n: int, au: float, av: float, bu: float, bv: float, number: float) -> int:
     trace[n, 0], trace[n, 1], trace[n, 2], trace[n, 3] = au, av, bu, bv
+    trace[n, 4] = number
     return n + 1
 
 
@@ -88,12 +95,15 @@ def _put_rim(cell: F8, m: int, begin: float, end: float, out: F8, n: int) -> int
 
     ``end`` may exceed m. The caller sets out's last point before and closes the run after.
     """
-    k = int(begin) + 1
+    k = int(begin)
+    out[n, 4] = cell[5, k if k < m else k - m]
+    k += 1
     while k < end:
         w = k if k < m else k - m
         out[n, 2], out[n, 3] = cell[0, w], cell[1, w]
         n += 1
         out[n, 0], out[n, 1] = cell[0, w], cell[1, w]
+        out[n, 4] = cell[5, w]
         k += 1
     return n
 
@@ -150,7 +160,7 @@ def _trace_chain(
         if k1 >= 0:
             bu, bv = au + t1 * (bu - au), av + t1 * (bv - av)
             chain[_LEAVE] = _rim_position(cell, m, k1, bu, bv)
-        n = _put(trace, n, pu, pv, bu, bv)
+        n = _put(trace, n, pu, pv, bu, bv, -1.0 - e)
         if k1 >= 0:
             break
         e = border.next_edge[e]
@@ -160,6 +170,34 @@ def _trace_chain(
     if chain[_LEAVE] < chain[_ENTER]:
         chain[_LEAVE] += m
     return n
+
+
+@inner
+def _settle_ends(m: int, chain: F8, trace: F8, margin: float) -> bool:
+    """Put right where a chain leaves that comes back to where it entered; False if it is none.
+
+    Its area tells whether it bounds a pocket, and hides all else, or a spike, and hides nothing.
+    """
+    first, end = int(chain[_FIRST]), int(chain[_END])
+    u, v = trace[first, 0], trace[first, 1]
+    du, dv = trace[end - 1, 2] - u, trace[end - 1, 3] - v
+    near2 = 64.0 * margin * margin
+    if du * du + dv * dv > near2:
+        return True
+    twice_area, far2 = 0.0, 0.0
+    for s in range(first, end):
+        au, av = trace[s, 0] - u, trace[s, 1] - v
+        bu, bv = trace[s, 2] - u, trace[s, 3] - v
+        twice_area += au * bv - bu * av
+        far2 = max(far2, bu * bu + bv * bv)
+    if far2 <= near2:
+        return False
+    hidden = chain[_LEAVE] - chain[_ENTER]
+    if twice_area > 0.0 and 2.0 * hidden < m:
+        chain[_LEAVE] = chain[_ENTER] + m
+    elif twice_area <= 0.0 and 2.0 * hidden > m:
+        chain[_LEAVE] = chain[_ENTER]
+    return True
 
 
 @inner
@@ -203,19 +241,12 @@ def _drop_hidden(cell: F8, m: int, chains: F8, n_chains: int, trace: F8, near2: 
 
 
 @inline
-def _put_chains_and_rim(
-    cell: F8, m: int, chains: F8, n_chains: int, trace: F8, out: F8
-) -> tuple[int, int]:
-    """Write the piece's outline; return (segments of border, segments in all).
-
-    Border segments come first: they are what a moving dot must not cross.
-    """
+def _put_chains_and_rim(cell: F8, m: int, chains: F8, n_chains: int, trace: F8, out: F8) -> int:
+    """Write the piece's outer ring, in order; return its number of segments."""
     n = ZERO
     for i in range(n_chains):
         for s in range(int(chains[i, _FIRST]), int(chains[i, _END])):
-            n = _put(out, n, trace[s, 0], trace[s, 1], trace[s, 2], trace[s, 3])
-    n_border = n
-    for i in range(n_chains):
+            n = _put(out, n, trace[s, 0], trace[s, 1], trace[s, 2], trace[s, 3], trace[s, 4])
         j = i + 1 if i + 1 < n_chains else 0
         a, b = int(chains[i, _END]) - 1, int(chains[j, _FIRST])
         begin, end = chains[i, _LEAVE], chains[j, _ENTER]
@@ -233,7 +264,9 @@ def _put_chains_and_rim(
         n = _put_rim(cell, m, 0.0, float(m), out, n)
         out[n, 2], out[n, 3] = cell[0, 0], cell[1, 0]
         n += 1
-    return n_border, n
+    for s in range(n):
+        out[s, 5] = 0.0
+    return int(n)
 
 
 @inner
@@ -242,24 +275,26 @@ def _put_loops(
     stamp: int,
 ) -> tuple[int, bool]:  # fmt: skip
     """Append the border loops that lie wholly within the piece; tell if one is its outer ring."""
-    cell, edge, trace, seen, out = pads.cell2, border.edge, pads.trace, pads.seen, pads.out
-    is_ringed = False
+    cell, edge, seen, out = pads.cell2, border.edge, pads.seen, pads.out
+    is_ringed, ring = False, 0.0
     for i in range(n_near):
         e = pads.near[i]
         au, av = edge[e, 0] - x, edge[e, 1] - y
         if seen[e] == stamp or not _is_inside(cell, m, au, av):
             continue
         first, twice_area = n, 0.0
+        ring += 1.0
         hidden = False
         for c in range(n_chains):
-            hidden = hidden or _hides(cell, m, pads.chains[c], trace, au, av, 0.0)
+            hidden = hidden or _hides(cell, m, pads.chains[c], pads.trace, au, av, 0.0)
         while seen[e] != stamp:
             seen[e] = stamp
             au, av = edge[e, 0] - x, edge[e, 1] - y
             bu, bv = edge[e, 2] - x, edge[e, 3] - y
             twice_area += au * bv - bu * av
             if not hidden:
-                n = _put(out, n, au, av, bu, bv)
+                out[n, 5] = ring
+                n = _put(out, n, au, av, bu, bv, -1.0 - e)
             e = border.next_edge[e]
         if n > first and twice_area > 0.0:
             is_ringed = True
@@ -268,25 +303,27 @@ def _put_loops(
 
 @merged
 def outline_piece(
-    m: int, x: float, y: float, border: Border, pads: Pads, n_near: int, stamp: int, near2: float
-) -> tuple[int, int]:
+    m: int, x: float, y: float, border: Border, pads: Pads, n_near: int, stamp: int, margin: float
+) -> int:
     """Write the outline of the dot's piece of a cell as directed segments, piece on the left.
 
     Parameters
     ----------
     m
-        Corners of the convex cell about (x, y) in ``pads.cell2``, see `voronoi`.
+        Corners of the convex cell about (x, y) in ``pads.cell2``, see `voronoi`; its last row
+        holds `margin` times the length of each side's ``a, b``.
     n_near
         Every border edge that meets the cell is among the first of ``pads.near``, each once.
     stamp
         ``pads.seen`` holds none on entry.
-    near2
-        Square of the distance within which the dot counts as on the border, not beyond it.
+    margin
+        The distance within which the dot counts as on the border, not beyond it, and corners of
+        the border as on the cell's rim, not inside.
 
     Returns
     -------
-    n_border, n : int
-        ``pads.out[:n_border]`` lies on the border, the rest up to n on the cell's rim.
+    n : int
+        ``pads.out[:n]`` holds ring after ring, each in order: ``u0, v0, u1, v1, number, ring``.
     """
     cell, edge, chains, out = pads.cell2, border.edge, pads.chains, pads.out
     n_chains = n_trace = ZERO
@@ -299,26 +336,22 @@ def outline_piece(
         if k0 < 0 and t0 <= t1:
             n_started_inside += 1
         elif t0 <= t1:
+            before = n_trace
             n_trace = _trace_chain(m, x, y, border, e, n_trace, chains[n_chains], pads, stamp)
-            n_chains += 1
-    for i in range(n_chains):
-        n_started_inside -= int(chains[i, _END] - chains[i, _FIRST]) - 1
+            n_started_inside -= n_trace - before - 1
+            if _settle_ends(m, chains[n_chains], pads.trace, margin):
+                n_chains += 1
+            else:
+                n_trace = before
     if n_chains:
-        n_chains = _drop_hidden(cell, m, chains, n_chains, pads.trace, near2)
-    n_border, n = _put_chains_and_rim(cell, m, chains, n_chains, pads.trace, out)
+        n_chains = _drop_hidden(cell, m, chains, n_chains, pads.trace, margin * margin)
+    n = _put_chains_and_rim(cell, m, chains, n_chains, pads.trace, out)
     if n_started_inside <= 0:
-        return n_border, n
+        return n
     n_all, is_ringed = _put_loops(m, x, y, border, pads, n_near, n_chains, n, stamp)
-    if is_ringed:  # the whole outer border lies in this cell: the rim bounds nothing
-        for s in range(n, n_all):
-            for r in range(4):
-                out[s - n, r] = out[s, r]
-        return n_all - n, n_all - n
-    for s in range(n_border, n):  # rim segments go behind the loops
-        k = n_all + s - n_border
-        for r in range(4):
-            out[k, r] = out[s, r]
-    for s in range(n, n_all + n - n_border):
-        for r in range(4):
-            out[s - n + n_border, r] = out[s, r]
-    return n_border + n_all - n, n_all
+    if not is_ringed:
+        return n_all
+    for s in range(n, n_all):  # the whole outer border lies in this cell: the rim bounds nothing
+        for r in range(6):
+            out[s - n, r] = out[s, r]
+    return n_all - n

@@ -1,8 +1,8 @@
 """Uniform grids of dots and of border edges, one grid for each compartment.
 
 All compartments share flat arrays. Row c of `grid_real` holds ``x0, y0, h, 1/h`` and the
-compartment's box ``xmin, ymin, xmax, ymax``; row c of `grid_int` holds ``nx, ny, first cell, kind``
-with kind 0 for a rectangle, whose box is its exact border, and 1 for a polygon.
+compartment's box ``xmin, ymin, xmax, ymax``; row c of `grid_int` holds ``nx, ny, first cell, kind,
+first border edge`` with kind 0 for a rectangle, whose box is its exact border, and 1 for a polygon.
 """
 
 from __future__ import annotations
@@ -81,6 +81,8 @@ def spread_edges(
     """
     for e in range(len(edges)):
         c = compartment_of_edge[e]
+        if grid_int[c, 3] == 0:
+            continue  # a rectangle's box is its border
         inv, nx, ny = grid_real[c, 3], grid_int[c, 0], grid_int[c, 1]
         ax, ay = (edges[e, 0] - grid_real[c, 0]) * inv, (edges[e, 1] - grid_real[c, 1]) * inv
         bx, by = (edges[e, 2] - grid_real[c, 0]) * inv, (edges[e, 3] - grid_real[c, 1]) * inv

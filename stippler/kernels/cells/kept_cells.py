@@ -108,7 +108,7 @@ def _way_to_centroid(
         return 0.0, 0.0, 0.0
     du, dv = du / area, dv / area
     if len(field.sums):  # next to nothing can have its centroid anywhere, by rounding
-        share = free_share(out, m, du, dv, 0.0)
+        share = free_share(out, m, du, dv, 0.0, False)
         du, dv = share * du, share * dv
     if over != 1.0:
         for k in range(m):

@@ -19,6 +19,7 @@ from stippler.kernels.cells.border import (
     outline_of_cell,
     outline_of_lanes,
     outline_within,
+    put_numbers,
     share_before_walls,
     sum_area,
     sum_field,
@@ -36,6 +37,7 @@ from stippler.kernels.cells.tables import (
     Field,
     Grid,
     Moves,
+    Outlines,
     Pads,
     Spacing,
     Spot,
@@ -48,7 +50,7 @@ from stippler.kernels.cells.voronoi import (
     start_lanes,
     unpack_lanes,
 )
-from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, merged
+from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, inner, merged
 from stippler.kernels.machine.simd import (
     BUFFER,
     get,
@@ -67,7 +69,7 @@ INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
 def relax_dots(
     start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
     border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
-    spacing: Spacing,
+    outlines: Outlines, spacing: Spacing,
 ) -> None:  # fmt: skip
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
@@ -82,8 +84,10 @@ def relax_dots(
     moves, stars
         Results.
     cells
-        Result, by row, unless empty: mass, centroid relative to the dot, second moment of area
-        (0 with a density).
+        Result, by row, unless empty: mass, centroid relative to the dot, area, second moment of
+        area.
+    outlines
+        Results, unless empty.
     spacing
         The rules that dots move by, or none: then they go to their centroids.
     """
@@ -95,19 +99,20 @@ def relax_dots(
         np.full(len(border.edge) + 1, -1, np.int64),
         np.zeros(1, np.int64),
         np.empty((room, 5)),
-        np.empty((room, 4)),
-        np.empty((2 * room + 3 * corner_cap + 8, 4)),
+        np.empty((room, 5)),
+        np.empty((2 * room + 3 * corner_cap + 8, 6)),
     )
     _relax(
-        start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars, spacing,
-        pads,
+        start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars,
+        outlines, spacing, pads,
     )  # fmt: skip
 
 
 @bare_kernel
 def _relax(
     start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
-    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, spacing: Spacing, pads: Pads,
+    field: Field, over: float, moves: Moves, cells: F8, stars: Stars, outlines: Outlines,
+    spacing: Spacing, pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
     for k in range(BUFFER):
@@ -127,7 +132,7 @@ def _relax(
         if grid.whole[c, 3] == 1:
             cell = spot.first_cell + spot.iy * spot.nx + spot.ix
             free = max(border.clear[cell] - 1, 0) * spot.h
-        m, is_packed, n_border, n, reach2, free, n_near = _cell_of_dot(
+        m, is_packed, n, reach2, free, n_near = _cell_of_dot(
             U, V, N, dots, grid, border, spot, free, pads
         )
         moves.free[i] = free
@@ -142,20 +147,22 @@ def _relax(
             _keep_star(N, m if is_packed else ZERO, i, stars)
         if is_fixed and len(spacing.table) == 0:
             continue
+        if len(outlines.n_sides):
+            _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
         mass, du, dv = _way_to_centroid(
             U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads
         )
         if len(spacing.table):
             du, dv = _way_by_rules(
-                U, V, N, m, is_packed, n_border, n, dots, spot, i, c, mass, du, dv, spacing, pads
+                U, V, N, m, is_packed, n, dots, spot, i, c, mass, du, dv, spacing, pads
             )
         if is_fixed:
             continue
-        if n_border:
+        if n:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
-            share = free_share(pads.out, n_border, du, dv, margin)
+            share = free_share(pads.out, n, du, dv, margin, True)
             du, dv = share * du, share * dv
-        if n:  # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
+            # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
             share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
             du, dv = share * du, share * dv
         moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
@@ -168,14 +175,14 @@ def _relax(
 def _cell_of_dot(
     U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
     pads: Pads,
-) -> tuple[int, bool, int, int, float, float, int]:  # fmt: skip
+) -> tuple[int, bool, int, float, float, int]:  # fmt: skip
     """Compute a dot's cell; `free` is a distance within which no border edge lies.
 
     Returns
     -------
     m, is_packed
         Its corners, in lanes or, if not `is_packed`, in ``pads.cell``; or `OVERFLOW`.
-    n_border, n
+    n
         Segments in ``pads.out`` if the border cuts the cell, see `outline_piece`, else 0.
     reach2, free
         Squared distance of the farthest corner; what is now known to be free of border edges.
@@ -191,7 +198,7 @@ def _cell_of_dot(
     is_packed = True
     m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
-        n_border = n = n_near = ZERO
+        n = n_near = ZERO
         reach2, is_swept = 0.0, False
         if is_packed:
             is_swept = ring == SWEEP_FROM and free == math.inf
@@ -224,12 +231,12 @@ def _cell_of_dot(
                 # the cell may lean out of the compartment: only its piece counts
                 if is_packed:
                     unpack_lanes(U, V, N, m, dots.x, dots.y, spot, pads.cell)
-                n_border, n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
+                n, r2 = outline_within(m, border, spot, ring, pads, n_near, stamp + 1)
                 is_last = is_last or 4.0 * r2 <= far * far
         if is_last:
             break
         ring += 1
-    return m, is_packed, n_border, n, reach2, free, n_near
+    return m, is_packed, n, reach2, free, n_near
 
 
 @merged
@@ -238,7 +245,7 @@ def _way_to_centroid(
     over: float, i: int, cells: F8, pads: Pads,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Return a cell's mass and the way to its centroid, (over-)relaxed; 0 without mass."""
-    second, is_whole = 0.0, n == 0
+    is_whole = n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
         area, du, dv = moments_of(U, V, m)
         area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
@@ -249,18 +256,21 @@ def _way_to_centroid(
                 outline_of_lanes(U, V, m, pads.out)
             else:
                 outline_of_cell(pads.cell, m, pads.out)
+        area = du = dv = 0.0
+        if len(field.sums) == 0 or len(cells):
+            area, du, dv, second = sum_area(pads.out, n)
+        if len(cells):
+            cells[i, 3], cells[i, 4] = area, second
         if len(field.sums):
             area, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
-        else:
-            area, du, dv, second = sum_area(pads.out, n)
     if area > 0.0:
         du, dv = du / area, dv / area
     else:
         area = du = dv = 0.0
     if len(cells):
-        cells[i, 0], cells[i, 1], cells[i, 2], cells[i, 3] = area, du, dv, second
+        cells[i, 0], cells[i, 1], cells[i, 2] = area, du, dv
     if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
-        share = free_share(pads.out, n, du, dv, 0.0)
+        share = free_share(pads.out, n, du, dv, 0.0, False)
         du, dv = share * du, share * dv
     if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
         du, dv = over * du, over * dv
@@ -269,8 +279,8 @@ def _way_to_centroid(
 
 @merged
 def _way_by_rules(
-    U: Any, V: Any, N: Any, m: int, is_packed: bool, n_border: int, n: int, dots: Dots, spot: Spot,
-    i: int, c: int, mass: float, du: float, dv: float, spacing: Spacing, pads: Pads,
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, spot: Spot, i: int,
+    c: int, mass: float, du: float, dv: float, spacing: Spacing, pads: Pads,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the way that the rules of spacing take from (du, dv), that to the centroid."""
     if is_packed and n == 0:
@@ -281,12 +291,48 @@ def _way_by_rules(
         if n == 0:
             n = m
             outline_of_cell(pads.cell, m, pads.out)
+            put_numbers(N, pads.cell, m, False, 0, pads.out)
         area, mu, mv, _ = sum_area(pads.out, n)
-        ru, rv = rules_at_border(pads, m, n_border, n, i, spot.x, spot.y, dots, spacing)
+        ru, rv = rules_at_border(pads.out, n, i, spot.x, spot.y, dots, spacing)
     ask(spacing, i, c, area, mass)
     if not area > 0.0:
         return 0.0, 0.0
     return blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
+
+
+@inner
+def _put_outline(
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, first_edge: int, w: int, pads: Pads,
+    outlines: Outlines,
+) -> None:  # fmt: skip
+    """Append a cell's outline, without sides of no length."""
+    out = pads.out
+    if n == 0:
+        n = m
+        if is_packed:
+            outline_of_lanes(U, V, m, out)
+        else:
+            outline_of_cell(pads.cell, m, out)
+        put_numbers(N, pads.cell, m, is_packed, first_edge, out)
+    corner, beyond, following = outlines.corner, outlines.beyond, outlines.following
+    base = outlines.used[0]
+    k = first = ZERO
+    ring = 0.0
+    for s in range(n):
+        if out[s, 5] != ring:
+            if k > first and base + k <= len(corner):
+                following[base + k - 1] = first
+            first, ring = k, out[s, 5]
+        if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
+            continue
+        if base + k < len(corner):
+            corner[base + k, 0], corner[base + k, 1] = out[s, 0], out[s, 1]
+            beyond[base + k], following[base + k] = int(out[s, 4]), k + 1
+        k += 1
+    if k > first and base + k <= len(corner):
+        following[base + k - 1] = first
+    outlines.n_sides[w] = k
+    outlines.used[0] = base + k
 
 
 @inline

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stippler.kernels.cells.tables import F8, Dots, Pads, Spacing
+from stippler.kernels.cells.tables import F8, Dots, Spacing
 from stippler.kernels.machine.jit import inline, inner
 from stippler.kernels.machine.simd import get
 
@@ -117,29 +117,16 @@ def rules_in_lanes(
     return du, dv
 
 
-@inline
-def _beyond(cell: F8, m: int, u: float, v: float) -> int:
-    """Return the number of the dot beyond the side of a cell on which (u, v) lies."""
-    best, number = math.inf, -1.0
-    for k in range(m):
-        a, b = cell[2, k], cell[3, k]
-        off = abs(a * u + b * v - cell[4, k]) / math.sqrt(max(a * a + b * b, _FAR))
-        if off < best:
-            best, number = off, cell[5, k]
-    return int(number)
-
-
 @inner
 def rules_at_border(
-    pads: Pads, m: int, n_border: int, n: int, i: int, x: float, y: float, dots: Dots,
-    spacing: Spacing,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the move that the rules want of a dot whose cell's outline is ``pads.out``.
+    out: F8, n: int, i: int, x: float, y: float, dots: Dots, spacing: Spacing
+) -> tuple[float, float]:
+    """Return the move that the rules want of a dot, by its cell's outline (see `border`).
 
     A wall pushes as the dot's own image behind its nearest place would; it pulls into its farthest
-    corner. ``pads.cell`` is the cell with m sides that the outline was cut from.
+    corner.
     """
-    rule, wants, out = spacing.rule, spacing.wants, pads.out
+    rule, wants = spacing.rule, spacing.wants
     own, e, radius = wants[i, MASS], wants[i, PER_AREA], wants[i, RADIUS]
     du = dv = 0.0
     near2, near_u, near_v, far2, far_u, far_v = math.inf, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -147,7 +134,7 @@ def rules_at_border(
         u, v, u1, v1 = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
         eu, ev = u1 - u, v1 - v
         length2 = eu * eu + ev * ev
-        if s < n_border:
+        if out[s, 4] < 0.0:
             t = min(max(-(u * eu + v * ev) / max(length2, _FAR), 0.0), 1.0)
             a, b = u + t * eu, v + t * ev
             if a * a + b * b < near2:
@@ -156,24 +143,19 @@ def rules_at_border(
                 far2, far_u, far_v = u * u + v * v, u, v
             continue
         mu, mv = 0.5 * (u + u1), 0.5 * (v + v1)
-        j = _beyond(pads.cell, m, mu, mv)
-        more, there, r = 0.0, e, radius
-        if j >= 0:
-            a, b = dots.x[j] - x, dots.y[j] - y
-            more, there, r = wants[j, MASS] - own, wants[j, PER_AREA], wants[j, RADIUS]
-        else:
-            t = 2.0 * (u * ev - v * eu) / max(length2, _FAR)
-            a, b = t * ev, -t * eu
+        j = int(out[s, 4])
+        there = wants[j, PER_AREA]
+        a, b = dots.x[j] - x, dots.y[j] - y
         mean = max(0.5 * (e + there), _FAR)
         su, sv = _by_side(
-            rule, max(a * a + b * b, _FAR), a, b, math.sqrt(length2), mu, mv, more, mean,
-            radius + r,
+            rule, max(a * a + b * b, _FAR), a, b, math.sqrt(length2), mu, mv,
+            wants[j, MASS] - own, mean, radius + wants[j, RADIUS],
         )  # fmt: skip
         t0, t1 = _by_corner(rule, u, v, mean), _by_corner(rule, u1, v1, mean)
         du += su + 0.5 * (t0 * u + t1 * u1)
         dv += sv + 0.5 * (t0 * v + t1 * v1)
     e = max(e, _FAR)
-    if n_border and near2 > 0.0:
+    if 0.0 < near2 < math.inf:
         su, sv = _by_side(
             rule, 4.0 * near2, 2.0 * near_u, 2.0 * near_v, 0.0, 0.0, 0.0, 0.0, e, 2.0 * radius
         )

@@ -99,6 +99,22 @@ class Spacing(NamedTuple):
     rule: F8
 
 
+class Outlines(NamedTuple):
+    """Results of a range of dots, unless empty: the outlines of their cells, one after another.
+
+    A side has its first corner, seen from the dot, the number of what lies beyond (see `border`),
+    and the number of the side after it, counted from the cell's first one. `n_sides` is by place
+    in the list of dots; ``used[0]`` sides are in use, and more than there is room for if there
+    was too little.
+    """
+
+    corner: F8
+    beyond: I4
+    following: I4
+    n_sides: I4
+    used: NDArray[np.int64]
+
+
 class Spot(NamedTuple):
     """A dot's place, its grid cell, and the grid and the compartment's box around it.
 

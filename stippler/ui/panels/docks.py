@@ -46,8 +46,8 @@ class Panels:
         return name in self._in_front
 
     def toggle(self, name: str) -> None:
-        """Open a panel, or close it."""
-        if self.is_open(name):
+        """Bring a panel to the front; close it if it is there."""
+        if self.is_in_front(name):
             self._close(name)
         else:
             self.show(name)

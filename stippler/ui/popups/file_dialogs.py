@@ -201,7 +201,7 @@ def _draw_verbs(widgets: Widgets, verb: str) -> tuple[bool, bool]:
     cancelled = widgets.button("Cancel", "Leave everything as it is.", width=width)
     imgui.same_line(0.0, gap)
     pressed = widgets.button(verb, f"{verb} this file.", width=width, primary=True)
-    return pressed, cancelled or imgui.is_key_pressed(imgui.Key.escape)
+    return pressed or widgets.entered(), cancelled or widgets.escaped()
 
 
 def _draw_list(widgets: Widgets, own: _Own) -> Path | None:

@@ -56,14 +56,15 @@ class NewPage:
     def _draw_verbs(self, widgets: Widgets) -> None:
         gap = 8.0 * widgets.scale
         width = (imgui.get_content_region_avail().x - gap) / 2
-        if widgets.button(
+        begun = widgets.button(
             "Begin", "The drawing that is open is closed.", width=width, primary=True
-        ):
+        )
+        if begun or widgets.entered():
             imgui.close_current_popup()
             self._begin(Page(self.width_mm, self.height_mm))
         imgui.same_line(0.0, gap)
         if widgets.button("Cancel", "Keep the drawing that is open.", width=width) or (
-            imgui.is_key_pressed(imgui.Key.escape)
+            widgets.escaped()
         ):
             imgui.close_current_popup()
 

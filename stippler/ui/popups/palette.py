@@ -66,7 +66,7 @@ class Palette:
         if not self.is_open:
             return
         chosen = self._draw_field(widgets, commands, fresh=fresh) or self._draw_list(widgets)
-        if chosen is not None or imgui.is_key_pressed(imgui.Key.escape):
+        if chosen is not None or widgets.escaped():
             imgui.close_current_popup()
             self.is_open = False
         imgui.end_popup()

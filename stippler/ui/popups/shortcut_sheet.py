@@ -48,7 +48,7 @@ class Sheet:
         imgui.begin_child("##lines")
         _draw_columns(widgets, _parts(commands, self._typed), columns)
         imgui.end_child()
-        if self._close or imgui.is_key_pressed(imgui.Key.escape):
+        if self._close or widgets.escaped():
             self._close = self.is_open = False
             imgui.close_current_popup()
         imgui.end_popup()

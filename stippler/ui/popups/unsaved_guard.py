@@ -124,7 +124,7 @@ class Guard:
         exported = widgets.button(
             "Export…", "Asks for a file, then goes on.", width=width, primary=True
         )
-        return discarded, cancelled or imgui.is_key_pressed(imgui.Key.escape), exported
+        return discarded, cancelled or widgets.escaped(), exported or widgets.entered()
 
     def _draw_wait(self, widgets: Widgets) -> None:
         imgui.open_popup(_WAIT)
@@ -133,9 +133,8 @@ class Guard:
             return
         widgets.heading(_WAIT)
         widgets.progress(-float(imgui.get_time()), "It is finished first.")
-        if widgets.button("Stay", "Leaves the drawing open (Esc)."):
-            self._pending = None
-        if imgui.is_key_pressed(imgui.Key.escape):
+        stays = widgets.button("Stay", "Leaves the drawing open (Esc).")
+        if stays or widgets.escaped() or widgets.entered():
             self._pending = None
         if self._pending is None:
             imgui.close_current_popup()

@@ -7,10 +7,26 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
+from stippler.editor.events import Event, Gone, KeyDown
+from stippler.editor.keymap import is_modifier
 from stippler.ui import theme
 from stippler.ui.look import Look
 from stippler.ui.theme import Theme
+from stippler.ui.window.imgui_input import feed
 from stippler.ui.window.window import Window
+
+_NAVIGATES = frozenset(
+    ("up", "down", "left", "right", "space", "enter", "kp_enter", "tab", "escape", "page_up",
+     "page_down", "home", "end", "-", ".", ",", *"0123456789")
+)  # fmt: skip
+"""Keys that are a panel's while one of its controls has the focus of the keyboard."""
+
+
+def _context() -> imgui.internal.Context:
+    """Return ImGui's own state, which there is for as long as there is a `Gui`."""
+    context = imgui.get_current_context()
+    assert context is not None
+    return context
 
 
 class Gui:
@@ -19,6 +35,9 @@ class Gui:
     Attributes
     ----------
     fonts : Fonts
+    escape_level : int
+        How many popups are open in a frame in which Esc is pressed, of which it is for the topmost;
+        else 0.
     """
 
     def __init__(
@@ -27,14 +46,18 @@ class Gui:
         self._window = window
         self._theme: Theme | None = None
         self._scale = 0.0
+        self.escape_level = 0
         self._context = imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
         io.set_log_filename("")
         io.config_ini_settings_save_last_used_date = False
-        io.config_flags |= imgui.ConfigFlags_.docking_enable
+        io.config_flags |= (
+            imgui.ConfigFlags_.docking_enable | imgui.ConfigFlags_.nav_enable_keyboard
+        )
         io.config_windows_move_from_title_bar_only = True
         io.config_docking_always_tab_bar = False
+        io.config_input_trickle_event_queue = False  # batches are parted by the editor
         # An exception inside a panel leaves windows open; ImGui closes them and goes on.
         io.config_error_recovery_enable_assert = False
         io.config_error_recovery_enable_tooltip = False
@@ -43,7 +66,10 @@ class Gui:
         self.dress(look)
         if layout:
             self.place_panels(rescaled(layout, self._scale / (layout_scale or self._scale)))
-        imgui.backends.glfw_init_for_opengl(window.address, True)
+        # Our own callbacks have the input; a backend that knows the pointer's window asks for none.
+        imgui.backends.glfw_init_for_opengl(window.address, False)
+        imgui.backends.glfw_cursor_enter_callback(window.address, 1)
+        self.feed(Gone())
         imgui.backends.opengl3_init("#version 330")
 
     def dress(self, look: Look) -> None:
@@ -66,7 +92,7 @@ class Gui:
 
     @property
     def scale(self) -> float:
-        """Pixels for each of the theme's."""
+        """Units for each of the theme's pixels."""
         return self._scale
 
     @property
@@ -79,10 +105,40 @@ class Gui:
         """Whether a text field has the keyboard."""
         return bool(imgui.get_io().want_text_input)
 
+    def feed(self, event: Event) -> bool:
+        """Hand an event to ImGui, for its next frame; return whether it is a key for panels.
+
+        Keys for the canvas are kept from ImGui, or arrows would walk through panels.
+        """
+        if isinstance(event, KeyDown):
+            if not (self.wants(event) or is_modifier(event.key)):
+                return False
+            if event.key == "escape":
+                self.escape_level = _context().open_popup_stack.size()
+        feed(event, self._window.ratio)
+        return isinstance(event, KeyDown)
+
+    def wants(self, event: KeyDown) -> bool:
+        """Return whether a key is for panels: a field, a list or menu, or what has the focus."""
+        context = _context()
+        if self.wants_keys or context.active_id or context.open_popup_stack.size():
+            return True
+        has_focus = context.nav_cursor_visible and context.nav_window is not None
+        chord = event.mods.ctrl or event.mods.alt
+        return has_focus and event.key in _NAVIGATES and not chord
+
+    @property
+    def has_field(self) -> bool:
+        """Whether a control is held or a field is typed into."""
+        return self.wants_keys or bool(_context().active_id)
+
     def frame(self, draw_ui: Callable[[], None]) -> Exception | None:
         """Let `draw_ui` build one frame; return what it raised, after closing the frame."""
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
+        io = imgui.get_io()
+        io.display_size = imgui.ImVec2(*self._window.size_units)
+        io.display_framebuffer_scale = imgui.ImVec2(*self._window.ratio)
         imgui.new_frame()
         failure: Exception | None = None
         try:
@@ -91,6 +147,7 @@ class Gui:
             failure = error
         finally:
             imgui.end_frame()
+        self.escape_level = 0
         imgui.render()
         return failure
 

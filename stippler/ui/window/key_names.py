@@ -54,3 +54,14 @@ def mods_of(bits: int) -> Mods:
     """Read GLFW's modifier bits; Command counts as Ctrl on a Mac."""
     ctrl = glfw.MOD_SUPER if sys.platform == "darwin" else glfw.MOD_CONTROL
     return Mods(bool(bits & ctrl), bool(bits & glfw.MOD_SHIFT), bool(bits & glfw.MOD_ALT))
+
+
+def with_key(mods: Mods, name: str, *, down: bool) -> Mods:
+    """Return what is held once a key is down or up; systems tell what was held before it."""
+    held = name.removeprefix("left_").removeprefix("right_")
+    ctrl = "super" if sys.platform == "darwin" else "control"
+    return Mods(
+        down if held == ctrl else mods.ctrl,
+        down if held == "shift" else mods.shift,
+        down if held == "alt" else mods.alt,
+    )

@@ -1,15 +1,16 @@
 """Scripted hands and eyes for a window without a display.
 
-Input goes through ImGui's GLFW callbacks, so it takes the same way as a person's.
+Input goes through the window's own callbacks, so it takes the same way as a person's.
 """
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from imgui_bundle import imgui  # isort: skip - first: glfw then uses its library
+from imgui_bundle import imgui  # noqa: F401  # isort: skip - first: glfw then uses its library
 import glfw
 import numpy as np
 from numpy.typing import NDArray
@@ -39,15 +40,26 @@ class Host:
 
     def __init__(self, window: Window, editor: Editor, step: Callable[[float], bool]) -> None:
         self._window, self._editor, self._step = window, editor, step
-        self._address = window.address
-        imgui.backends.glfw_window_focus_callback(self._address, 1)
-        imgui.backends.glfw_cursor_enter_callback(self._address, 1)
+        self._in_batch = False
+        window.input.focus(True)
+        self.settle()
+
+    @contextlib.contextmanager
+    def batch(self) -> Iterator[None]:
+        """Let all that the hands do within come in at once, as from a stalled or quick system."""
+        self._in_batch = True
+        try:
+            yield
+        finally:
+            self._in_batch = False
         self.settle()
 
     # --- time -------------------------------------------------------------------------------
 
     def settle(self) -> None:
         """Go on until what has happened so far has been drawn."""
+        if self._in_batch:
+            return
         for _ in range(_SETTLED):
             if not self._step(0.0):
                 if self._editor.idle:
@@ -72,17 +84,17 @@ class Host:
 
     def move(self, x: float, y: float) -> None:
         """Move the pointer."""
-        imgui.backends.glfw_cursor_pos_callback(self._address, float(x), float(y))
+        self._window.input.move(float(x), float(y))
         self._frame()
 
     def leave(self) -> None:
         """Take the pointer out of the window."""
-        imgui.backends.glfw_cursor_enter_callback(self._address, 0)
+        self._window.input.enter(False)
         self._frame()
 
     def enter(self) -> None:
         """Bring it back."""
-        imgui.backends.glfw_cursor_enter_callback(self._address, 1)
+        self._window.input.enter(True)
         self._frame()
 
     def press(self, button: str = "left", *, shift: bool = False) -> None:
@@ -122,7 +134,7 @@ class Host:
     def scroll(self, notches: float, at: tuple[float, float]) -> None:
         """Turn the wheel over a place."""
         self.move(*at)
-        imgui.backends.glfw_scroll_callback(self._address, 0.0, float(notches))
+        self._window.input.scroll(0.0, float(notches))
         self.settle()
 
     def key(self, name: str, *, ctrl: bool = False, shift: bool = False) -> None:
@@ -144,7 +156,7 @@ class Host:
         for sign in text:
             key = sign if sign.isascii() and sign.isalnum() else "world_1"
             self._key(key, glfw.PRESS)
-            imgui.backends.glfw_char_callback(self._address, ord(sign))
+            self._window.input.character(ord(sign))
             self._key(key, glfw.RELEASE)
         self.settle()
 
@@ -166,7 +178,7 @@ class Host:
 
     def drop(self, *paths: Path) -> None:
         """Drop files on the window."""
-        self._window.drop(list(paths))
+        self._window.input.drop([str(path) for path in paths])
         self.settle()
 
     # --- eyes -------------------------------------------------------------------------------
@@ -192,14 +204,15 @@ class Host:
     # --- inside -----------------------------------------------------------------------------
 
     def _frame(self) -> None:
-        self._step(0.0)
+        if not self._in_batch:
+            self._step(0.0)
 
     def _button(self, button: str, action: int, mods: int = 0) -> None:
-        imgui.backends.glfw_mouse_button_callback(self._address, _BUTTONS[button], action, mods)
+        self._window.input.button(_BUTTONS[button], action, mods)
         self._frame()
 
     def _key(self, name: str, action: int, *, ctrl: bool = False, shift: bool = False) -> None:
         code = getattr(glfw, f"KEY_{name.upper()}")
         mods = (glfw.MOD_CONTROL if ctrl else 0) | (glfw.MOD_SHIFT if shift else 0)
-        imgui.backends.glfw_key_callback(self._address, code, 0, action, mods)
+        self._window.input.key(code, 0, action, mods)
         self._frame()

@@ -11,7 +11,6 @@ import ctypes
 import os
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 from imgui_bundle import imgui  # noqa: F401  # isort: skip - first: glfw then uses its library
@@ -20,36 +19,14 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.editor.events import (
-    LEFT,
-    MIDDLE,
-    RIGHT,
-    CloseAsked,
-    Dropped,
-    Event,
-    Exposed,
-    FocusLost,
-    Gone,
-    KeyDown,
-    KeyUp,
-    Mods,
-    Moved,
-    Pressed,
-    Released,
-    Scrolled,
-)
+from stippler.editor.events import Event
 from stippler.errors import DisplayError
-from stippler.ui.window.key_names import key_name, mods_of
+from stippler.ui.window.input import Input
 from stippler.ui.window.placement import Place, place_of, put
 from stippler.units import px_per_mm
 
 _NULL_PLATFORM = 0x00060005  # GLFW_PLATFORM_NULL, which python's glfw does not name
 _PLAUSIBLE_PX_PER_MM = (2.0, 30.0)  # 50 to 760 dpi; screens that tell less or more do not know
-_BUTTONS = {
-    glfw.MOUSE_BUTTON_LEFT: LEFT,
-    glfw.MOUSE_BUTTON_RIGHT: RIGHT,
-    glfw.MOUSE_BUTTON_MIDDLE: MIDDLE,
-}
 _NO_DISPLAY = "start it inside a desktop session, or draw without a window: stippler render"
 _NO_GL = (
     "install a graphics driver with OpenGL 3.3 (Debian, Ubuntu: apt install libgl1 "
@@ -86,19 +63,28 @@ class Window:
         Size and corner, in screen coordinates (pixels, but on high-dpi screens of some systems).
     offscreen : bool
         Without any display, for tests and screenshots.
+    ratio : float
+        Pixels a unit of an offscreen window; real ones tell theirs.
+
+    Attributes
+    ----------
+    input : Input
+        What takes the system's callbacks, and scripted ones.
     """
 
-    def __init__(self, title: str, place: Place, *, offscreen: bool = False) -> None:
-        self._events: list[Event] = []
-        self._pointer = (0.0, 0.0)
+    def __init__(
+        self, title: str, place: Place, *, offscreen: bool = False, ratio: float = 1.0
+    ) -> None:
         self._errors: list[str] = []
         self._title = title
+        self._given_ratio = ratio if offscreen else 0.0
         # The null platform's waiting does not wait.
         self._woken = threading.Event() if offscreen else None
         glfw.set_error_callback(lambda _, text: self._errors.append(_decoded(text)))
         self._start(offscreen)
         try:
-            self._handle = self._open(title, place.size, offscreen)
+            width, height = (round(side * (self._given_ratio or 1.0)) for side in place.size)
+            self._handle = self._open(title, (width, height), offscreen)
             self._place = place
             put(self._handle, place)
             glfw.make_context_current(self._handle)
@@ -107,7 +93,7 @@ class Window:
         except BaseException:
             glfw.terminate()
             raise
-        self._listen()
+        self.input = Input(self._handle, lambda: self.ratio)
 
     # --- opening ----------------------------------------------------------------------------
 
@@ -155,81 +141,9 @@ class Window:
 
     # --- input ------------------------------------------------------------------------------
 
-    def _listen(self) -> None:
-        # ImGui's own callbacks, installed later, call these in turn.
-        glfw.set_cursor_pos_callback(self._handle, self._on_move)
-        glfw.set_mouse_button_callback(self._handle, self._on_button)
-        glfw.set_scroll_callback(self._handle, self._on_scroll)
-        glfw.set_key_callback(self._handle, self._on_key)
-        glfw.set_window_focus_callback(self._handle, self._on_focus)
-        glfw.set_cursor_enter_callback(self._handle, self._on_enter)
-        glfw.set_drop_callback(self._handle, self._on_drop)  # type: ignore[arg-type]
-        glfw.set_window_close_callback(self._handle, self._on_close)
-        exposed = self._on_expose
-        glfw.set_window_refresh_callback(self._handle, exposed)
-        glfw.set_framebuffer_size_callback(self._handle, exposed)
-        glfw.set_window_content_scale_callback(self._handle, exposed)
-
-    def _on_move(self, _: object, x: float, y: float) -> None:
-        sx, sy = self._pixels_per_unit()
-        self._pointer = (x * sx, y * sy)
-        self._events.append(Moved(*self._pointer, glfw.get_time()))
-
-    def _on_button(self, _: object, button: int, action: int, mods: int) -> None:
-        if name := _BUTTONS.get(button):
-            kind = Pressed if action == glfw.PRESS else Released
-            self._events.append(kind(name, *self._pointer, glfw.get_time(), mods_of(mods)))
-
-    def _on_scroll(self, _: object, dx: float, dy: float) -> None:
-        held = self._held_mods()
-        self._events.append(Scrolled(dx, dy, *self._pointer, glfw.get_time(), held))
-
-    def _on_key(self, _: object, key: int, scancode: int, action: int, mods: int) -> None:
-        name = key_name(key, scancode)
-        if action == glfw.RELEASE:
-            self._events.append(KeyUp(name, mods_of(mods), glfw.get_time()))
-        else:
-            repeated = action == glfw.REPEAT
-            self._events.append(KeyDown(name, mods_of(mods), repeated, glfw.get_time()))
-
-    def _on_focus(self, _: object, focused: int) -> None:
-        if not focused:
-            self._events.append(FocusLost())
-
-    def _on_enter(self, _: object, entered: int) -> None:
-        if not entered:
-            self._events.append(Gone())
-
-    def _on_drop(self, _: object, paths: list[str]) -> None:
-        self._events.append(Dropped(tuple(Path(path) for path in paths)))
-
-    def _on_close(self, _: object) -> None:
-        glfw.set_window_should_close(self._handle, False)  # the editor may have to ask first
-        self._events.append(CloseAsked())
-
-    def _on_expose(self, *_: object) -> None:
-        self._events.append(Exposed())
-
-    def drop(self, paths: list[Path]) -> None:
-        """Take files as if they had been dropped; GLFW cannot be asked to."""
-        self._on_drop(None, [str(path) for path in paths])
-
-    def press_close(self) -> None:
-        """Act as if the window's close button had been pressed; GLFW cannot be asked to."""
-        self._on_close(None)
-
-    def _held_mods(self) -> Mods:
-        def held(*keys: int) -> bool:
-            return any(glfw.get_key(self._handle, key) == glfw.PRESS for key in keys)
-
-        ctrl = held(glfw.KEY_LEFT_CONTROL, glfw.KEY_RIGHT_CONTROL)
-        shift = held(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT)
-        return Mods(ctrl, shift, held(glfw.KEY_LEFT_ALT, glfw.KEY_RIGHT_ALT))
-
     def take_events(self) -> list[Event]:
         """Return what came in since the last call, oldest first."""
-        events, self._events = self._events, []
-        return events
+        return self.input.take()
 
     def wait(self, timeout_s: float) -> None:
         """Let events in; sleep until one comes or the time is over (0 does not sleep)."""
@@ -261,13 +175,39 @@ class Window:
         return int(width), int(height)
 
     @property
+    def size_units(self) -> tuple[float, float]:
+        """Size in the units in which the system places windows; ImGui's, too."""
+        (x, y), (width, height) = self.ratio, self.size_px
+        return width / x, height / y
+
+    @property
+    def ratio(self) -> tuple[float, float]:
+        """Pixels a unit, across and down: 1 on most systems, 1.5 or 2 on dense screens of some."""
+        if self._given_ratio:
+            return self._given_ratio, self._given_ratio
+        width, height = glfw.get_window_size(self._handle)
+        width_px, height_px = self.size_px
+        return (
+            width_px / width if width and width_px else 1.0,
+            height_px / height if height and height_px else 1.0,
+        )
+
+    @property
     def scale(self) -> float:
-        """How much larger than at 96 dpi text and controls should be."""
+        """How much larger than at 96 dpi text and controls should be, in units.
+
+        The system tells it in pixels: where a unit has two of them, they are larger already.
+        """
         if os.environ.get("STIPPLER_SCALE"):
             with contextlib.suppress(ValueError):
                 return min(max(float(os.environ["STIPPLER_SCALE"]), 0.5), 4.0)
-        scale = float(glfw.get_window_content_scale(self._handle)[0])
+        scale = self._content_scale() / self.ratio[0]
         return scale if 0.5 <= scale <= 4.0 else 1.0
+
+    def _content_scale(self) -> float:
+        """Return pixels for each of 96 dpi, as the system tells it."""
+        told = float(glfw.get_window_content_scale(self._handle)[0])
+        return max(told, self._given_ratio)
 
     @property
     def px_per_mm(self) -> float:
@@ -277,15 +217,10 @@ class Window:
             width_mm, _ = glfw.get_monitor_physical_size(monitor)
             mode = glfw.get_video_mode(monitor)
             if width_mm > 0 and mode:
-                told = mode.size.width * self._pixels_per_unit()[0] / width_mm
+                told = mode.size.width * self.ratio[0] / width_mm
                 if _PLAUSIBLE_PX_PER_MM[0] <= told <= _PLAUSIBLE_PX_PER_MM[1]:
                     return float(told)
-        return px_per_mm(96.0 * self.scale)
-
-    def _pixels_per_unit(self) -> tuple[float, float]:
-        width, height = glfw.get_window_size(self._handle)
-        width_px, height_px = glfw.get_framebuffer_size(self._handle)
-        return (width_px / width if width else 1.0), (height_px / height if height else 1.0)
+        return px_per_mm(96.0 * self.scale * self.ratio[0])
 
     @property
     def now_s(self) -> float:
@@ -301,6 +236,10 @@ class Window:
     def place(self) -> Place:
         """Where the window is, to be put there again."""
         return place_of(self._handle, self._place)
+
+    def restore(self) -> None:
+        """Show a minimised window again."""
+        glfw.restore_window(self._handle)
 
     def end(self) -> None:
         """Close the window after this frame."""

@@ -10,8 +10,8 @@ from hypothesis.extra import numpy as npst
 from PIL import Image, ImageOps
 
 from stippler.errors import ParameterError, PictureError
-from stippler.files import picture
-from stippler.files.picture import (
+from stippler.files.read import darkness, picture
+from stippler.files.read.picture import (
     check_picture,
     darkness_of_array,
     darkness_of_image,
@@ -113,8 +113,8 @@ def test_exif_orientation(tmp_path, orientation):
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (640, 1), (101, 33)])
 def test_large_pictures_are_averaged_in_bands(monkeypatch, size):
-    monkeypatch.setattr(picture, "MAX_FIELD_PIXELS", 100)
-    monkeypatch.setattr(picture, "_BAND_PIXELS", 64)
+    monkeypatch.setattr(darkness, "MAX_FIELD_PIXELS", 100)
+    monkeypatch.setattr(darkness, "_BAND_PIXELS", 64)
     pixels = np.random.default_rng(1).integers(0, 256, (size[1], size[0]), np.uint8)
     dark = darkness_of_image(Image.fromarray(pixels), "perceptual")
     k = min(max(int(np.ceil(np.sqrt(pixels.size / 100))), 1), *size)
@@ -144,7 +144,7 @@ def jpeg_bytes():
         (jpeg_bytes()[:700], "cut off"),
         (jpeg_bytes()[:2000], "cut off"),
         (b"\x89PNG\r\n\x1a\n" + b"\0" * 40, "no picture"),
-        (b"%PDF-1.7\n", "no picture"),
+        (b"%PDF-1.7\n", "is a PDF"),
     ],
 )
 def test_files_that_are_no_picture(tmp_path, content, says):

@@ -1,0 +1,1 @@
+"""Files in: pictures of every kind, and tables of dots."""

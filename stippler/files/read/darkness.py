@@ -1,0 +1,170 @@
+"""From samples to a field of darkness over white paper.
+
+Darkness is 1 − luminance, over white where the picture is transparent. Luminance is *linear*
+(what reaches the eye, so ink that covers that share of the paper reflects as much light as the
+picture's pixel) or *perceptual* (sRGB-encoded, the numbers in most files).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.errors import ParameterError, PictureError
+from stippler.files.read.light import (
+    DEEPEST,
+    WEIGHTS,
+    Light,
+    light_of,
+    light_to_srgb,
+    srgb_to_light,
+)
+from stippler.files.read.pixels import CHANNELS, Pixels
+
+TONES = ("linear", "perceptual")
+MAX_FIELD_PIXELS = 16_000_000
+"""Larger pictures are averaged down to this: 0.04 mm a pixel on A4, below any pen's dot."""
+
+_BAND_PIXELS = 4_000_000
+_OVERSHOOT = 0.01  # of white: what resampling leaves beside 0 and 1 in floats
+
+
+def check_tone(tone: str) -> None:
+    """Raise `ParameterError` unless it is one of `TONES`."""
+    if tone not in TONES:
+        raise ParameterError(f"{tone!r} is no tone", "tone", f"choose {' or '.join(TONES)}")
+
+
+def darkness_of_pixels(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[str, ...]]:
+    """Turn pixels into darkness, upright, averaged to `MAX_FIELD_PIXELS`; and what to tell."""
+    width, height = pixels.size
+    k = min(max(math.ceil(math.sqrt(width * height / MAX_FIELD_PIXELS)), 1), width, height)
+    out = np.empty((height // k, width // k), np.float32)
+    light = light_of(pixels)
+    note = (light.note,) if light.note else ()
+    if tone == "perceptual" and len(light.tables) == 1:
+        light = light.perceptual()
+    rows = max(_BAND_PIXELS // (width * k), 1)
+    for top in range(0, len(out), rows):
+        bottom = min(top + rows, len(out))
+        band = pixels.rows(top * k, bottom * k)[:, : out.shape[1] * k]
+        dark = _band(band.reshape(*band.shape[:2], -1), pixels, light, tone)
+        if k > 1:
+            dark = dark.reshape(bottom - top, k, -1, k).mean(axis=(1, 3))
+        out[top:bottom] = dark
+    return _oriented(out, pixels.orientation), pixels.notes + note
+
+
+def _band(samples: NDArray[Any], pixels: Pixels, light: Light, tone: str) -> NDArray[np.float32]:
+    n, white = CHANNELS[pixels.colour], pixels.white
+    colours, alpha = samples[..., :n], None
+    if pixels.alpha:
+        alpha = (samples[..., n] / np.float32(white)).astype(np.float32)
+    if white == 1:
+        colours = _checked_floats(colours, alpha if pixels.alpha == "premultiplied" else None)
+        if not (pixels.profile or pixels.gamma or pixels.colour in ("lightness", "cmyk")):
+            return _over_white(_float_darkness(colours, pixels.inverted, tone), alpha)
+        colours, white = np.rint(colours * np.float32(DEEPEST)).astype(np.uint16), DEEPEST
+    elif pixels.alpha == "premultiplied":
+        colours, white = _straight(colours, samples[..., n]), DEEPEST
+    if pixels.inverted:
+        colours = colours.dtype.type(white) - colours
+    if pixels.colour == "cmyk" and not light.profile:
+        colours = _without_ink(colours, white)
+    dark = light.darkness(colours, white)
+    if tone == "perceptual" and len(light.tables) != 1:
+        dark = _to_perceptual(dark)
+    return _over_white(dark, alpha)
+
+
+def _over_white(
+    dark: NDArray[np.float32], alpha: NDArray[np.float32] | None
+) -> NDArray[np.float32]:
+    if alpha is not None:
+        dark = dark * np.clip(alpha, 0, 1)
+    return np.clip(dark, 0, 1)
+
+
+def _straight(colours: NDArray[Any], alpha: NDArray[Any]) -> NDArray[np.uint16]:
+    """Divide colours by the alpha that they were multiplied by."""
+    share = colours / np.maximum(alpha, 1).astype(np.float32)[..., None]
+    straight: NDArray[np.uint16] = np.rint(np.clip(share, 0, 1) * DEEPEST).astype(np.uint16)
+    return straight
+
+
+def _without_ink(ink: NDArray[Any], white: int) -> NDArray[Any]:
+    """Return the RGB of CMYK inks that are as they would be by name."""
+    paper = (white - ink.astype(np.float32)) / np.float32(white)
+    rgb = paper[..., :3] * paper[..., 3:]
+    return np.rint(rgb * np.float32(white)).astype(ink.dtype)
+
+
+# --- floats -----------------------------------------------------------------------------------
+
+
+def _checked_floats(
+    colours: NDArray[Any], alpha: NDArray[np.float32] | None
+) -> NDArray[np.float32]:
+    """Return floats between 0 and 1, or say why they are no picture."""
+    if alpha is not None:
+        colours = colours / np.where(alpha > 0, alpha, 1)[..., None]
+    low, high = float(colours.min()), float(colours.max())
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise PictureError(
+            "has float pixels that are no numbers (NaN or infinite)", "", "save it with 16 bits"
+        )
+    if low < -_OVERSHOOT or high > 1 + _OVERSHOOT:
+        raise PictureError(
+            f"has float pixels from {low:g} to {high:g}, outside 0 (black) to 1 (white)",
+            "",
+            "scale them, or save it with 16 bits",
+        )
+    unit: NDArray[np.float32] = np.clip(colours, 0, 1).astype(np.float32)
+    return unit
+
+
+def _float_darkness(colours: NDArray[np.float32], inverted: bool, tone: str) -> NDArray[np.float32]:
+    """Return the darkness of sRGB floats, without any rounding to steps."""
+    if inverted:
+        colours = 1 - colours
+    if colours.shape[-1] == 1 and tone == "perceptual":
+        return np.float32(1) - colours[..., 0]
+    dark: NDArray[np.float32] = 1 - srgb_to_light(colours)
+    if colours.shape[-1] == 1:
+        return dark[..., 0]
+    red, green, blue = (np.float32(w) for w in WEIGHTS)
+    mixed = red * dark[..., 0] + green * dark[..., 1] + blue * dark[..., 2]
+    return _to_perceptual(mixed) if tone == "perceptual" else mixed
+
+
+# --- tables -----------------------------------------------------------------------------------
+
+
+def _to_perceptual(linear_dark: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Darkness of linear light to darkness of encoded light, by a table of 2¹⁶ steps."""
+    index = np.rint(np.clip(linear_dark, 0, 1) * np.float32(65535)).astype(np.uint16)
+    encoded: NDArray[np.float32] = _PERCEPTUAL[index]
+    return encoded
+
+
+def _encoded_table() -> NDArray[np.float32]:
+    table = (1 - light_to_srgb(1 - np.arange(65536) / 65535)).astype(np.float32)
+    table[0], table[-1] = 0, 1
+    return table
+
+
+_PERCEPTUAL = _encoded_table()
+
+
+def _oriented(field: NDArray[np.float32], orientation: int) -> NDArray[np.float32]:
+    """Apply EXIF orientation 1 to 8."""
+    if orientation in (5, 6, 7, 8):
+        field = field.T
+    if orientation in (2, 3, 7, 6):
+        field = field[:, ::-1]
+    if orientation in (3, 4, 7, 8):
+        field = field[::-1]
+    return np.ascontiguousarray(field)
