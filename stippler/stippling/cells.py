@@ -45,7 +45,7 @@ _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 NO_OUTLINES = Outlines(np.empty((0, 2)), _NO_ROWS, _NO_ROWS, _NO_ROWS, np.zeros(1, np.int64))
 _NO_WANTS = np.empty((0, 3))
-LLOYD = Spacing(_NO_WANTS, _NO_WANTS, np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(10))
+LLOYD = Spacing(_NO_WANTS, _NO_WANTS, np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(12))
 """No rules: dots go to the centroids of their cells."""
 
 

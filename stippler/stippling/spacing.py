@@ -30,11 +30,15 @@ class Rules:
         So are large dots nearer than `base` and `slope` of their diameter, up to `cap`.
     hole : float
         Empty circles larger by this than the hexagonal grid's draw the dots around them.
+    narrow : float
+        How much less for each spacing by which dots are wider than `WIDE`.
     level, pull : float
         How much of what they want dots do in a step.
     gain, low : float
         A dot goes to its ink's centroid instead, by this much for each spacing that the ink's
         centroid is off the cell's, less `low`.
+    least : float
+        Share of every move that goes to the ink's centroid.
     """
 
     near: float = 0.85
@@ -42,16 +46,18 @@ class Rules:
     slope: float = 0.53
     cap: float = 0.97
     hole: float = 1.17
+    narrow: float = 0.6
     level: float = 0.3
     pull: float = 0.5
     gain: float = 6.0
     low: float = 0.05
+    least: float = 0.0
 
     def array(self, scale: float) -> NDArray[np.float64]:
         """Return what kernels read; `scale` turns a mean of the field into a level."""
         return np.array(
-            [self.near, self.base, self.slope, self.cap, self.hole, self.level, self.pull,
-             self.gain, self.low, scale]
+            [self.near, self.base, self.slope, self.cap, self.hole, self.narrow, self.level,
+             self.pull, self.gain, self.low, self.least, scale]
         )  # fmt: skip
 
 

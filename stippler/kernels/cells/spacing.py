@@ -22,8 +22,11 @@ from stippler.kernels.cells.tables import F8, Dots, Spacing
 from stippler.kernels.machine.jit import inline, inner
 from stippler.kernels.machine.simd import get
 
-NEAR, BASE, SLOPE, CAP, HOLE, LEVEL, PULL, GAIN, LOW, SCALE = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+NEAR, BASE, SLOPE, CAP, HOLE, NARROW, LEVEL, PULL, GAIN, LOW, LEAST, SCALE = range(12)
 """Places in `Spacing.rule`."""
+
+WIDE, WIDEST = 0.85, 1.05
+"""Diameters of dots, in hexagonal spacings, between which holes get narrower."""
 
 MASS, PER_AREA, RADIUS = 0, 1, 2
 """Columns of `Spacing.wants` and `Spacing.found`."""
@@ -70,10 +73,12 @@ def _by_side(
 
 
 @inline
-def _by_corner(rule: F8, u: float, v: float, per_area: float) -> float:
+def _by_corner(rule: F8, u: float, v: float, per_area: float, radius: float) -> float:
     """Return how much of the way to a corner pull goes."""
     r = math.sqrt(u * u + v * v)
-    largest = rule[HOLE] * math.sqrt(HEXAGONAL / (3.0 * per_area))
+    h = math.sqrt(HEXAGONAL / per_area)
+    wide = min(max(2.0 * radius / h - WIDE, 0.0), WIDEST - WIDE)
+    largest = (rule[HOLE] - rule[NARROW] * wide) * h * (1.0 / math.sqrt(3.0))
     return float(rule[PULL] * max(r - largest, 0.0) / max(r, _FAR))
 
 
@@ -110,7 +115,7 @@ def rules_in_lanes(
             rule, d2, a, b, length, 0.5 * (u + u1), 0.5 * (v + v1), more,
             max(0.5 * (e + there), _FAR), radius + r,
         )  # fmt: skip
-        t = _by_corner(rule, u, v, max((e + before + there) / 3.0, _FAR))
+        t = _by_corner(rule, u, v, max((e + before + there) / 3.0, _FAR), radius)
         du += su + t * u
         dv += sv + t * v
         before = there
@@ -151,7 +156,7 @@ def rules_at_border(
             rule, max(a * a + b * b, _FAR), a, b, math.sqrt(length2), mu, mv,
             wants[j, MASS] - own, mean, radius + wants[j, RADIUS],
         )  # fmt: skip
-        t0, t1 = _by_corner(rule, u, v, mean), _by_corner(rule, u1, v1, mean)
+        t0, t1 = _by_corner(rule, u, v, mean, radius), _by_corner(rule, u1, v1, mean, radius)
         du += su + 0.5 * (t0 * u + t1 * u1)
         dv += sv + 0.5 * (t0 * v + t1 * v1)
     e = max(e, _FAR)
@@ -159,7 +164,7 @@ def rules_at_border(
         su, sv = _by_side(
             rule, 4.0 * near2, 2.0 * near_u, 2.0 * near_v, 0.0, 0.0, 0.0, 0.0, e, 2.0 * radius
         )
-        t = _by_corner(rule, far_u, far_v, e)
+        t = _by_corner(rule, far_u, far_v, e, radius)
         du += su + t * far_u
         dv += sv + t * far_v
     return du, dv
@@ -172,6 +177,8 @@ def blend(
 ) -> tuple[float, float]:  # fmt: skip
     """Return the rules' move, held within half a spacing, and Lloyd's in its place on uneven ink.
 
+    No less than `LEAST` of the move is Lloyd's.
+
     (ink_u, ink_v) is the centroid of the cell's ink, (mid_u, mid_v) that of the cell.
     """
     rule, e = spacing.rule, max(spacing.wants[i, PER_AREA], _FAR)
@@ -181,5 +188,5 @@ def blend(
         du *= 0.5 * s / length
         dv *= 0.5 * s / length
     off = math.hypot(ink_u - mid_u, ink_v - mid_v)
-    w = min(max(rule[GAIN] * off / max(s, _FAR) - rule[LOW], 0.0), 1.0)
+    w = min(max(rule[GAIN] * off / max(s, _FAR) - rule[LOW], rule[LEAST]), 1.0)
     return (1.0 - w) * du + w * ink_u, (1.0 - w) * dv + w * ink_v
