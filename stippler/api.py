@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.drawing import Drawing as _Drawing
-from stippler.drawing.pens import pen_named
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
 from stippler.errors import ParameterError
 from stippler.stippling.plan import DEFAULT_PEN, Plan
 from stippler.stippling.stipple import Progress, notes_on, stages
@@ -147,9 +145,7 @@ def draw(
         if show is not None:
             show(last.stage, last.done, last.total)
     assert last is not None, "stages() yields at least its end"
-    drawing = Drawing.from_reference(
-        reference, last.position_mm, last.radius_mm, _style(last.radius_mm, plan)
-    )
+    drawing = Drawing.from_reference(reference, last.position_mm, last.radius_mm, plan)
     drawing.notes = notes_on(last)
     if isinstance(image, str | PathLike):
         drawing.inputs = (Path(image),)
@@ -246,13 +242,3 @@ def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
     if image is None:
         raise ParameterError("is missing", "image", "give a path, a Pillow image or an array")
     return picture.darkness_of_array(image, tone)
-
-
-def _style(radius_mm: NDArray[np.float32], plan: Plan) -> Style:
-    """Return the size range and the pen the dots were drawn with."""
-    pen = pen_named(plan.pen)
-    if plan.size_range_mm is not None:
-        return Style(*plan.size_range_mm, pen)
-    if not len(radius_mm):
-        return Style(pen=pen)
-    return Style(float(radius_mm.min()), float(radius_mm.max()), pen)

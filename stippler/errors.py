@@ -38,6 +38,10 @@ class TableError(StipplerError):
     """A table of dots that cannot be read."""
 
 
+class HistoryError(StipplerError):
+    """A step of the history that is lost."""
+
+
 class DrawingFileError(StipplerError):
     """A drawing or journal that cannot be read."""
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.brushes import move, scatter, shape, size
+from stippler.brushes import move, scatter, selection, shape, size
 from stippler.brushes.brush import Brush
 from stippler.brushes.jitter import jitter
 from stippler.brushes.local_cells import areas_of, centroids_of
@@ -141,8 +141,7 @@ def unfix(touch: Touch) -> None:
 
 
 def _set_fixed(touch: Touch, fixed: bool) -> None:
-    rows = touch.rows[touch.document.dots.fixed[touch.rows] != fixed]
-    touch.document.change("fixed", rows, np.full(len(rows), fixed))
+    selection.hold(touch.document, touch.rows, fixed)
 
 
 # --- dots move ----------------------------------------------------------------------------------

@@ -69,7 +69,7 @@ def _part_of_area(
     document: Document, k: int, around: Box
 ) -> Box | shapely.Polygon | shapely.MultiPolygon:
     """Return the part of an area in a box: a box again where the area is one."""
-    box = document.bounds.box_of(k)
+    box = document.partition.box_of(k)
     if box is not None:
         return (
             max(box[0], around[0]),

@@ -12,6 +12,7 @@ from stippler.brushes.jitter import jitter
 from stippler.brushes.local_cells import centroids_of
 from stippler.brushes.shape import reshape, resized
 from stippler.drawing.document import Document
+from stippler.drawing.dots import FIXED, FREE, NO_CURVE
 from stippler.drawing.store import Rows
 
 Ids = NDArray[np.int64]
@@ -36,7 +37,7 @@ def in_outline(document: Document, corners: Sequence[Point]) -> Ids:
 
 def in_area(document: Document, at: Point) -> Ids:
     """Return the ids of all dots of the area under a point."""
-    area = document.bounds.area_at(np.array([at]))[0]
+    area = document.partition.area_at(np.array([at]))[0]
     return np.asarray(document.dots.id[document.dots.area == area])
 
 
@@ -61,16 +62,25 @@ def duplicate(document: Document, ids: Ids) -> Ids:
     """Add a free copy of each dot a little to the side; return the copies' ids."""
     dots = document.dots.take(alive(document, ids))
     dots.position_mm += _DUPLICATE_SHIFT_MM
-    dots.fixed[:] = False
+    dots.constraint[:] = FREE
     rows = document.insert(dots)
     return np.array(document.dots.id[rows])
 
 
 def fix(document: Document, ids: Ids, fixed: bool) -> None:
     """Fix or free the dots."""
-    rows = alive(document, ids)
-    rows = rows[document.dots.fixed[rows] != fixed]
-    document.change("fixed", rows, np.full(len(rows), fixed))
+    hold(document, alive(document, ids), fixed)
+
+
+def hold(document: Document, rows: Rows, fixed: bool) -> None:
+    """Fix free dots where they are, or free those that are held, by a place or a curve."""
+    held = document.dots.fixed[rows]
+    rows = rows[held != fixed]
+    document.change("constraint", rows, np.full(len(rows), FIXED if fixed else FREE, np.int8))
+    if not fixed:
+        rows = rows[document.dots.curve[rows] != NO_CURVE]
+        document.change("curve", rows, np.full(len(rows), NO_CURVE, np.int32))
+        document.change("parameter", rows, np.zeros(len(rows)))
 
 
 def relax(document: Document, ids: Ids) -> None:

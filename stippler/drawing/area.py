@@ -2,23 +2,64 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
+import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
-from stippler.drawing.style import Style
+from stippler.errors import GeometryError, ParameterError
+
+PAGE_AREA = 0
+"""Id of the area that a new drawing has: the page."""
+
+_COLOUR = re.compile("#[0-9a-f]{6}")
 
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """A part of the page with one style; its index in the drawing is its dots' `area`.
+    """A part of the page with one style; its id is its dots' `area`.
 
     Attributes
     ----------
     outline_mm : shapely Polygon or MultiPolygon
-        On the page, in mm; holes allowed.
+        On the page, in mm; holes allowed. Where areas overlap, the one of the higher id owns what
+        both have.
+    style : int
+        Id of its style.
+    colour : str
+        In the list of areas, as ``#rrggbb``.
     """
 
     name: str
     outline_mm: Polygon | MultiPolygon
-    style: Style = field(default_factory=Style)
+    style: int = 0
+    colour: str = "#808080"
+    locked: bool = False
+    hidden: bool = False
+
+    def __post_init__(self) -> None:
+        if not _COLOUR.fullmatch(self.colour):
+            raise ParameterError(f"{self.colour!r} is no colour", "area", "give #rrggbb")
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it in JSON's types."""
+        data = {name: getattr(self, name) for name in self.__slots__}
+        return data | {"outline_mm": shapely.to_wkt(self.outline_mm, rounding_precision=-1)}
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """Make an area of what `to_json` gave."""
+        try:
+            outline = shapely.from_wkt(data["outline_mm"])
+        except shapely.errors.GEOSException as error:
+            raise GeometryError(str(error), "outline of an area") from None
+        if not isinstance(outline, Polygon | MultiPolygon):
+            raise GeometryError("is no polygon", "outline of an area")
+        return cls(**{**data, "outline_mm": outline})
+
+    def renamed(self, name: str) -> Self:
+        """Return it under another name."""
+        return replace(self, name=name)

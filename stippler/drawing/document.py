@@ -1,49 +1,37 @@
-"""A drawing while it is edited: its dots found by id and by place, strokes, runs and history."""
+"""A drawing while it is edited: the only way to change it, with history, runs and drafts."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing import records
+from stippler.drawing.changes import Changes
 from stippler.drawing.dots import Dots
+from stippler.drawing.draft import Draft
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.edit import Edit
-from stippler.drawing.history import BUDGET_BYTES, History
+from stippler.drawing.history import BUDGET_BYTES, History, Step
 from stippler.drawing.index import DotIndex
-from stippler.drawing.partition import Bounds
+from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry, Follower
+from stippler.drawing.partition import NOWHERE, Partition
+from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.run import Run
 from stippler.drawing.store import DotStore, Rows, union
-from stippler.kernels.dots.merge_results import merge_positions
-
-_MOST_PARTS = 256
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Changed:
-    """What is to be shown anew.
-
-    Attributes
-    ----------
-    rows : array or None
-        Of dots that a person has changed; None is all.
-    places : bool
-        Whether a result has moved or sized dots all over the drawing, besides.
-    """
-
-    rows: Rows | None
-    places: bool
 
 
 class Document:
-    """All changes of a drawing's dots go through here; for one thread.
+    """All changes of a drawing go through here; for one thread.
 
     A person's changes are made within a stroke, between `begin` and `commit` or `cancel`; a
-    stroke is one step of the history. The worker's results are merged into a run, which is one
-    step too, and leave alone whatever a person has changed since the run began; so strokes and
-    a run may go on at the same time, and can be undone in any state of the run.
+    stroke is one step of the history, whatever kinds of values it changes. The worker's results
+    are merged into a run, which is one step too, and leave alone whatever a person has changed
+    since the run began; so strokes and a run may go on at the same time, and can be undone in any
+    state of the run. Dots that a worker makes are a draft: they stand among the others as they
+    come, and their end is one step.
 
     Parameters
     ----------
@@ -52,35 +40,46 @@ class Document:
 
     Attributes
     ----------
-    revision : int
-        Grows with every change of the dots.
+    changes : Changes
+        Whoever follows this document asks it with a cursor of their own.
     """
 
     def __init__(self, drawing: Drawing, budget_bytes: int = BUDGET_BYTES) -> None:
         self.drawing = drawing
-        self.bounds = Bounds(drawing.areas)
         self.history = History(budget_bytes)
-        self.revision = 0
-        self._store = DotStore(drawing.dots)
-        self._index = DotIndex(
-            self._store.dots.position_mm, (drawing.page.width_mm, drawing.page.height_mm)
-        )
-        self._edited = np.zeros(self._store.next_id + 1024, np.int32)  # revision, by id
+        self.changes = Changes()
+        self._store = DotStore(drawing.dots, drawing.first_free(records.DOT))
         self._stroke: Recorder | None = None
         self._run: Run | None = None
-        self._changed: list[Rows] = []
-        self._all_changed, self._places_changed = True, False
+        self._draft: Draft | None = None
+        self._partition: Partition | None = None
+        self._followers: list[Follower] = []
+        self._replayed: Edit = Edit("")
+        self._replayed_step: Step | None = None
         drawing.dots = self._store.dots
+        self._find_by_place()
 
     @property
     def dots(self) -> Dots:
-        """The dots as they are; to be read only."""
+        """The dots as they are, those of a draft among them; to be read only."""
         return self._store.dots
+
+    @property
+    def revision(self) -> int:
+        """Grows with every change."""
+        return self.changes.now
+
+    @property
+    def partition(self) -> Partition:
+        """Which area owns which part of the page."""
+        if self._partition is None:
+            self._partition = Partition(self.drawing.outlines())
+        return self._partition
 
     @property
     def n_bytes(self) -> int:
         """Memory all this takes, without the history."""
-        return self._store.n_bytes + self._index.n_bytes + self._edited.nbytes
+        return self._store.n_bytes + self._index.n_bytes
 
     # --- finding ----------------------------------------------------------------------------
 
@@ -112,10 +111,12 @@ class Document:
         return self._stroke is not None
 
     def begin(self, label: str) -> None:
-        """Begin a stroke."""
+        """Begin a stroke; not while a draft is made."""
+        if self._draft is not None:
+            raise ValueError("dots are being made")
         if self._stroke is not None:
             raise ValueError("a stroke has begun already")
-        self._stroke = Recorder(self._store, label)
+        self._stroke = Recorder(self.drawing, self._store, label)
 
     def move(self, rows: Rows, position_mm: NDArray[np.float64]) -> None:
         """Move the free ones of some dots, as far as their areas let them."""
@@ -123,49 +124,75 @@ class Document:
         if not free.all():
             rows, position_mm = rows[free], position_mm[free]
         old = self.dots.position_mm[rows]
-        new = self.bounds.confine(old, position_mm, self.dots.area[rows])
+        new = self.partition.confine(old, position_mm, self.dots.area[rows])
         self.change("position_mm", rows, new)
 
     def change(self, field: str, rows: Rows, values: NDArray[np.generic]) -> None:
         """Set one field of some rows."""
         if not len(rows):
             return
-        stroke = self._in_stroke()
-        stroke.change(field, rows, values)
-        self._note(rows, self.dots.id[rows], moved=field == "position_mm")
+        self._in_stroke().change(field, rows, values)
+        self._note(rows, rows, moved=field == "position_mm")
 
     def insert(self, dots: Dots) -> Rows:
         """Add dots, which get new ids and the areas they lie in; those off the page are not."""
         stroke = self._in_stroke()
-        area = self.bounds.area_at(dots.position_mm)
-        if (area < 0).any():
-            dots = dots.take(area >= 0)
-        dots.area[:] = area[area >= 0]
+        area = self.partition.area_at(dots.position_mm)
+        if (area == NOWHERE).any():
+            dots = dots.take(area != NOWHERE)
+        dots.area[:] = area[area != NOWHERE]
         if not len(dots):
             return np.empty(0, np.int64)
         dots.id[:] = self._store.new_ids(len(dots))
         rows = stroke.insert(dots)
-        self.drawing.dots = self.dots
-        self._note(rows, dots.id, moved=True)
+        self._note(rows, rows, moved=True)
         return rows
 
     def remove(self, rows: Rows) -> None:
         """Remove dots; rows of others change."""
         if not len(rows):
             return
-        stroke = self._in_stroke()
-        rows = union([rows], len(self.dots))
-        ids = self.dots.id[rows]
-        touched = stroke.remove(rows)
-        self.drawing.dots = self.dots
-        self._note(touched, ids, moved=True)
+        touched = self._in_stroke().remove(union([rows], len(self.dots)))
+        self._note(touched, touched[:0], moved=True)
 
-    def commit(self) -> Edit:
+    def set(self, kind: str, i: int, value: Any) -> None:
+        """Set a value of another kind than dots, as `stippler.drawing.records` lists them.
+
+        Parameters
+        ----------
+        i : int
+            0 for page and reference.
+        value : object or None
+            None takes it out.
+        """
+        if value is None and kind == records.PAGE:
+            raise ValueError("there is always a page")
+        self._in_stroke().set(kind, i, value)
+        self._note_value(kind, i)
+
+    def add(self, kind: str, value: Any) -> int:
+        """Add a value under a new id, which is returned."""
+        i = self.drawing.first_free(kind)
+        self.set(kind, i, value)
+        self.drawing.next_id[kind] = i + 1
+        return i
+
+    def own_by_place(self, rows: Rows) -> Rows:
+        """Give dots to the areas that they lie in, after outlines changed; return who moved.
+
+        Those that lie in none keep theirs.
+        """
+        area = self.partition.area_at(self.dots.position_mm[rows])
+        moves = (area != self.dots.area[rows]) & (area != NOWHERE)
+        self.change("area", rows[moves], area[moves])
+        return np.asarray(rows[moves])
+
+    def commit(self, *, of_job: bool = False) -> Edit:
         """End the stroke; it is a step of the history, if it has changed anything."""
         edit = self._in_stroke().finish()
         self._stroke = None
         if not edit.is_empty:
-            self.history.push(edit)
+            self._push(edit, of_job=of_job)
         return edit
 
     def cancel(self) -> None:
@@ -180,6 +207,11 @@ class Document:
         """Take the last step back; return whether there was one. A run that goes on ends.
 
         Where that run has not moved anything yet, ending it is all there is to take back.
+
+        Raises
+        ------
+        HistoryError
+            If the step lay on disk and is lost; it and all older ones are gone, and nothing else.
         """
         self._no_stroke()
         step = self.history.undone
@@ -187,16 +219,23 @@ class Document:
             self.end_run()
             if self.history.undone is not step:
                 return True
-        return self._step(self.history.undo())
+        return self._step(self.history.undo(), UNDONE)
 
     def redo(self) -> bool:
-        """Do the last undone step again; return whether there was one."""
-        self._no_stroke()
-        return self._step(self.history.redo())
+        """Do the last undone step again; return whether there was one.
 
-    def _step(self, edit: Edit | None) -> bool:
+        Raises
+        ------
+        HistoryError
+            If the step lay on disk and is lost; it and all later ones are gone, and nothing else.
+        """
+        self._no_stroke()
+        return self._step(self.history.redo(), REDONE)
+
+    def _step(self, edit: Edit | None, what: str) -> bool:
         if edit is not None:
             self._apply(edit)
+            self._tell(Entry(what))
         return edit is not None
 
     # --- the worker's runs ------------------------------------------------------------------
@@ -207,94 +246,169 @@ class Document:
         return self._run is not None
 
     def begin_run(self, label: str) -> Dots:
-        """Begin a run; return a copy of the dots for the worker."""
+        """Begin a run; return a copy of the dots for the worker, in the order of their ids."""
         self._no_stroke()
         self.end_run()
-        self._run = Run(self.history.open(label, of_job=True), self.dots, self.revision)
-        return self.dots.copy()
+        dots = self.dots.by_id()
+        self._run = Run(self.history.open(label, of_job=True), dots, self.changes.now)
+        self._tell(Entry(OPENED, Edit(label)))
+        return dots
 
     def merge(self, position_mm: NDArray[np.float64]) -> int:
         """Move the dots of the run to a result's positions; return how many moved.
 
-        Dots that are gone, fixed, or changed by a person since the run began stay as they are.
+        Dots that are gone, held, or changed by a person since the run began stay as they are.
         """
-        run = self._run
-        if run is None:
+        if self._run is None:
             return 0
-        result = np.ascontiguousarray(position_mm, np.float64)
-        if result.shape != run.after.shape:
-            raise ValueError("the result is not one of this run")
-        n, furthest_mm = merge_positions(
-            run.ids,
-            result,
-            self._store.row_of_id,
-            self._edited,
-            run.base,
-            self.dots.fixed,
-            self.dots.position_mm,
-            run.after,
-        )
-        self.revision += 1
+        n, furthest_mm = self._run.move(self._store, position_mm)
         self._index.drift(furthest_mm)
-        self._places_changed = True
+        self.changes.note_places()
         return n
 
     def merge_radii(self, radius_mm: NDArray[np.float32]) -> int:
         """Give the dots of the run a result's radii, as `merge` does; return how many got one."""
-        run = self._run
-        if run is None:
+        if self._run is None:
             return 0
-        if radius_mm.shape != run.radius_after.shape:
-            raise ValueError("the result is not one of this run")
-        rows = self._store.rows(run.ids)
-        mine = (rows >= 0) & (self._edited[run.ids] <= run.base)
-        mine[mine] = ~self.dots.fixed[rows[mine]]
-        run.radius_after[mine] = radius_mm[mine]
-        self._store.write("radius_mm", rows[mine], radius_mm[mine])
-        self.revision += 1
-        self._places_changed = True
-        return int(mine.sum())
+        n = self._run.size(self._store, radius_mm)
+        self.changes.note_places()
+        return n
 
     def end_run(self) -> None:
         """End the run; it is a step of the history, if it has changed anything."""
         if self._run is not None:
+            self.tell_run()
             run, self._run = self._run, None
-            self.history.fill(run.step, run.edit())
+            edit = run.edit()
+            self.history.fill(run.step, edit)
+            self._tell(Entry(ENDED))
+            if not edit.is_empty:
+                self.changes.note_all(len(self.dots))  # what followers left out meanwhile
 
-    # --- what has changed -------------------------------------------------------------------
+    # --- drafts -----------------------------------------------------------------------------
 
-    def take_changed(self) -> Changed:
-        """Return what has changed since the last call."""
-        parts, everything, places = self._changed, self._all_changed, self._places_changed
-        self._changed, self._all_changed, self._places_changed = [], False, False
-        if everything:
-            return Changed(None, places)
-        n = len(self.dots)
-        return Changed(union([rows[rows < n] for rows in parts], n), places)
+    @property
+    def in_draft(self) -> bool:
+        """Whether dots are being made."""
+        return self._draft is not None
+
+    def begin_draft(self, label: str, area: int, pen: str) -> None:
+        """Begin to make the dots of an area anew; those that it has give way at once."""
+        self._no_stroke()
+        self.end_run()
+        self.end_draft()
+        replaced = np.flatnonzero(self.dots.area == area)
+        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(pen))
+        self._renewed()
+
+    def draft(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> None:
+        """Show the dots of the draft as they are now; ignored where there is none."""
+        if self._draft is None:
+            return
+        if self._draft.show(position_mm, radius_mm):
+            self._index.lose()
+            self.changes.note_places()
+        else:
+            self._renewed()
+
+    def end_draft(self) -> Edit | None:
+        """End the draft; it is one step, or how the drawing begins where nothing was there."""
+        if self._draft is None:
+            return None
+        draft, self._draft = self._draft, None
+        edit = draft.finish()
+        self._renewed()
+        if edit.is_empty:
+            return edit
+        if self.history.steps or len(edit.dots.removed):
+            self._push(edit, of_job=True)
+        else:
+            self._tell(Entry(MADE, edit))
+        return edit
+
+    # --- who follows ------------------------------------------------------------------------
+
+    def follow(self, follower: Follower) -> None:
+        """Call a function with each `Entry` from now on; `replay` of all makes the same drawing."""
+        self._followers.append(follower)
+
+    def tell_run(self) -> None:
+        """Tell followers what the run has changed so far; a journal asks for it now and then."""
+        if self._run is not None and self._followers:
+            part = self._run.part()
+            if not part.is_empty:
+                self._tell(Entry(PART, part))
+
+    def replay(self, entry: Entry) -> None:
+        """Do what an entry tells of, to the state that it was told in."""
+        edit = entry.edit
+        if entry.what == OPENED and edit is not None:
+            self._replayed_step, self._replayed = self.history.open(edit.label, of_job=True), edit
+        elif entry.what == ENDED and self._replayed_step is not None:
+            self.history.fill(self._replayed_step, self._replayed)
+        elif entry.what in (UNDONE, REDONE):
+            step = self.history.undo if entry.what == UNDONE else self.history.redo
+            self._step(step(), entry.what)
+        elif edit is not None:
+            self._apply(edit)
+            if entry.what == PART:
+                self._replayed = self._replayed.then(edit)
+            elif entry.what == STEP:
+                self._push(edit, of_job=entry.of_job)
+
+    # --- inside -----------------------------------------------------------------------------
+
+    def _push(self, edit: Edit, *, of_job: bool) -> None:
+        self.history.push(edit, of_job=of_job)
+        self._tell(Entry(STEP, edit, of_job))
+
+    def _tell(self, entry: Entry) -> None:
+        for follower in self._followers:
+            follower(entry)
 
     def _apply(self, edit: Edit) -> None:
-        rows = self._store.apply(edit)
-        self.drawing.dots = self.dots
-        ids = [change.ids for change in edit.changes.values()]
-        ids += [edit.removed.dots.id, edit.inserted.dots.id]
-        places = bool("position_mm" in edit.changes or len(edit.removed) or len(edit.inserted))
-        self._note(rows, np.concatenate(ids), moved=places)
+        rows = self._store.apply(edit.dots)
+        for kind, i in edit.next_id.items():
+            self.drawing.next_id[kind] = max(i, self.drawing.next_id.get(kind, 0))
+        self._store.next_id = max(self._store.next_id, edit.next_id.get(records.DOT, 0))
+        for kind, values in edit.values.items():
+            for i, (_, after) in values.items():
+                self.drawing.put(kind, i, after)
+                self._note_value(kind, i)
+        if not edit.dots.is_empty:
+            there = self._store.rows(edit.dots.touched)
+            changes = edit.dots.changes
+            came = len(edit.dots.removed) or len(edit.dots.inserted)
+            self._note(rows, there[there >= 0], moved=bool("position_mm" in changes or came))
 
-    def _note(self, rows: Rows, ids: NDArray[np.int64], *, moved: bool) -> None:
-        """Take note of changed rows, and of the ids of the dots that a person changed."""
-        self.revision += 1
-        if self._store.next_id > len(self._edited):
-            more = np.zeros(self._store.next_id + self._store.next_id // 4 + 1024, np.int32)
-            more[: len(self._edited)] = self._edited
-            self._edited = more
-        self._edited[ids] = self.revision
+    def _note(self, rows: Rows, edited: Rows, *, moved: bool) -> None:
+        """Take note of changed rows, and of the rows of the dots that a person changed."""
+        self._use_dots()
+        self.changes.note_rows(rows, len(self.dots))
+        self._store.edited[edited] = self.changes.now
         if moved:
             self._index.update(rows, self.dots.position_mm)
-        if self._all_changed:
-            return
-        self._changed.append(rows)
-        if len(rows) == len(self.dots) or len(self._changed) > _MOST_PARTS:
-            self._changed, self._all_changed = [], True
+
+    def _note_value(self, kind: str, i: int) -> None:
+        self.changes.note_record(kind, i)
+        if kind == records.AREA:
+            self._partition = None
+        elif kind == records.PAGE:
+            self._find_by_place()
+
+    def _use_dots(self) -> None:
+        self.drawing.dots = self._store.dots
+        self.drawing.next_id[records.DOT] = self._store.next_id
+
+    def _renewed(self) -> None:
+        """Take note that dots may be others altogether."""
+        self._use_dots()
+        self._index.lose()
+        self.changes.note_all(len(self.dots))
+
+    def _find_by_place(self) -> None:
+        page = self.drawing.page
+        self._index = DotIndex(self.dots.position_mm, (page.width_mm, page.height_mm))
 
     def _in_stroke(self) -> Recorder:
         if self._stroke is None:

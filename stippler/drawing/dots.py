@@ -14,10 +14,15 @@ Index = NDArray[np.intp] | NDArray[np.bool_] | slice
 MAX_ELONGATION = 4.0
 """Largest ratio of a dot's long axis to its short one."""
 
+FREE, FIXED, ON_CURVE = 0, 1, 2
+"""What holds a dot: nothing, its place, or a curve that it may move along."""
+
+NO_CURVE = -1
+
 
 @dataclass(slots=True, eq=False)
 class Dots:
-    """Structure of arrays; row i of every array is dot i. 50 bytes a dot.
+    """Structure of arrays; row i of every array is dot i. 62 bytes a dot.
 
     Attributes
     ----------
@@ -34,9 +39,13 @@ class Dots:
     seed : (n,) uint32
         Chooses the rough outline.
     area : (n,) int32
-        Index into the drawing's areas.
-    fixed : (n,) bool
-        Fixed dots shape the cells of others and never move.
+        Id of the area that it lies in.
+    constraint : (n,) int8
+        `FREE`, `FIXED` or `ON_CURVE`; all shape the cells of others, only free ones move freely.
+    curve : (n,) int32
+        Id of the line that holds it; `NO_CURVE` for dots that are not on one.
+    parameter : (n,) float64
+        Where it lies along that line; 0 for dots that are not on one.
     id : (n,) int64
         Unique in the drawing and never used twice.
     """
@@ -48,11 +57,20 @@ class Dots:
     roughness: NDArray[np.float32]
     seed: NDArray[np.uint32]
     area: NDArray[np.int32]
-    fixed: NDArray[np.bool_]
+    constraint: NDArray[np.int8]
+    curve: NDArray[np.int32]
+    parameter: NDArray[np.float64]
     id: NDArray[np.int64]
 
     def __len__(self) -> int:
         return len(self.position_mm)
+
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Which dots do not move freely; a read-only copy of what `constraint` says."""
+        held = np.asarray(self.constraint != FREE)
+        held.flags.writeable = False
+        return held
 
     @classmethod
     def round(
@@ -84,7 +102,9 @@ class Dots:
             roughness=np.zeros(n, np.float32),
             seed=first_seeds(ids),
             area=np.full(n, area, np.int32),
-            fixed=np.zeros(n, np.bool_),
+            constraint=np.zeros(n, np.int8),
+            curve=np.full(n, NO_CURVE, np.int32),
+            parameter=np.zeros(n),
             id=ids,
         )
 
@@ -92,6 +112,11 @@ class Dots:
     def none(cls) -> Dots:
         """Make an empty set."""
         return cls.round(np.empty((0, 2)), np.empty(0))
+
+    def by_id(self) -> Dots:
+        """Return copies in the order of ids, which is what jobs go by."""
+        in_order = bool((np.diff(self.id) > 0).all())
+        return self.copy() if in_order else self.take(np.argsort(self.id))
 
     def take(self, which: Index) -> Dots:
         """Return copies of the rows chosen by an index, mask or slice."""

@@ -1,63 +1,60 @@
-"""The whole document."""
+"""The whole drawing, as plain data."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
-from typing import Self
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely.geometry import box
+from shapely.geometry import MultiPolygon, Polygon, box
 
-from stippler.drawing.area import Area
+from stippler.drawing import records
+from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.dots import Dots
+from stippler.drawing.page import MAX_PAGE_MM, Page
+from stippler.drawing.pens import pen_named
+from stippler.drawing.records import Record
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
-from stippler.errors import ParameterError
 
-MAX_PAGE_MM = 10_000.0
+__all__ = ["MAX_PAGE_MM", "Drawing", "Page"]
 
 
-@dataclass(frozen=True, slots=True)
-class Page:
-    """The paper: origin top left, x right, y down."""
-
-    width_mm: float
-    height_mm: float
-
-    def __post_init__(self) -> None:
-        for name, value in (("width", self.width_mm), ("height", self.height_mm)):
-            if not (math.isfinite(value) and 0 < value <= MAX_PAGE_MM):
-                raise ParameterError(
-                    f"a {name} of {value:g} mm is no paper",
-                    "page",
-                    f"give more than 0 and at most {MAX_PAGE_MM:g} mm",
-                )
+def _one_style() -> dict[int, Style]:
+    return {0: Style()}
 
 
 @dataclass(slots=True, eq=False)
 class Drawing:
-    """Page, areas, dots and reference.
+    """Page, dots, reference, and records of other kinds by their ids.
+
+    While it is edited only a `Document` changes it.
 
     Attributes
     ----------
-    areas : list of Area
-        The page itself is the first.
+    areas, styles, lines, patterns : dict of id to value
+        The area of id 0 is the page itself.
     reference : Reference or None
         What tone is taken from.
+    next_id : dict of kind to int
+        The first id of each kind that was never given; see `first_free`.
     """
 
     page: Page
-    areas: list[Area]
+    areas: dict[int, Area]
     dots: Dots = field(default_factory=Dots.none)
     reference: Reference | None = None
+    styles: dict[int, Style] = field(default_factory=_one_style)
+    lines: dict[int, Record] = field(default_factory=dict)
+    patterns: dict[int, Record] = field(default_factory=dict)
+    next_id: dict[str, int] = field(default_factory=dict)
 
     @classmethod
     def blank(cls, page: Page, style: Style | None = None) -> Self:
         """Make an empty drawing whose one area is the page."""
         outline = box(0.0, 0.0, page.width_mm, page.height_mm)
-        return cls(page, [Area("page", outline, style or Style())])
+        return cls(page, {PAGE_AREA: Area("page", outline)}, styles={0: style or Style()})
 
     @classmethod
     def from_reference(
@@ -69,11 +66,57 @@ class Drawing:
     ) -> Self:
         """Make a drawing on a page of the reference's size; the style's pen gives dots shapes."""
         drawing = cls.blank(Page(reference.width_mm, reference.height_mm), style)
-        drawing.dots = drawing.areas[0].style.pen.drawn(Dots.round(position_mm, radius_mm))
+        pen = pen_named(drawing.style_of(PAGE_AREA).pen)
+        drawing.dots = pen.drawn(Dots.round(position_mm, radius_mm))
         drawing.reference = reference
         return drawing
 
-    @property
-    def next_id(self) -> int:
-        """The first id no dot has used."""
-        return int(self.dots.id.max()) + 1 if len(self.dots) else 0
+    def style_of(self, area: int) -> Style:
+        """Return the style of an area."""
+        return self.styles[self.areas[area].style]
+
+    def outlines(self) -> dict[int, Polygon | MultiPolygon]:
+        """Return the outlines of all areas in mm, from the lowest to the uppermost."""
+        return {i: self.areas[i].outline_mm for i in sorted(self.areas)}
+
+    def table(self, kind: str) -> dict[int, Any]:
+        """Return the values of a kind by their ids; not for `SINGLE` kinds."""
+        tables: dict[str, dict[int, Any]] = {
+            records.AREA: self.areas,
+            records.STYLE: self.styles,
+            records.LINE: self.lines,
+            records.PATTERN: self.patterns,
+        }
+        return tables[kind]
+
+    def get(self, kind: str, i: int = 0) -> Any:
+        """Return a value; None where there is none."""
+        if kind in records.SINGLE:
+            return getattr(self, kind)
+        return self.table(kind).get(i)
+
+    def put(self, kind: str, i: int, value: Any) -> None:
+        """Set a value; None takes it out."""
+        if kind in records.SINGLE:
+            setattr(self, kind, value)
+        elif value is None:
+            self.table(kind).pop(i, None)
+        else:
+            self.table(kind)[i] = value
+
+    def first_free(self, kind: str) -> int:
+        """Return the first id of a kind that was never given."""
+        used = self.dots.id if kind == records.DOT else np.fromiter(self.table(kind), np.int64)
+        return max(self.next_id.get(kind, 0), int(used.max()) + 1 if len(used) else 0)
+
+    def snapshot(self) -> Self:
+        """Return a copy that stays as it is, whatever becomes of this drawing."""
+        return replace(
+            self,
+            dots=self.dots.copy(),
+            areas=dict(self.areas),
+            styles=dict(self.styles),
+            lines=dict(self.lines),
+            patterns=dict(self.patterns),
+            next_id=dict(self.next_id),
+        )

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import logging
 import tempfile
-from dataclasses import dataclass
+import zipfile
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 
+from stippler.drawing.dot_edit import DotEdit
 from stippler.drawing.edit import Edit
+from stippler.errors import HistoryError
 
 BUDGET_BYTES = 256 * 2**20
 
@@ -26,6 +30,8 @@ class Step:
         None while the step is still being made, or lies on disk.
     of_job : bool
         Whether no hand but a job has made it, which can make it again.
+    rest : Edit or None
+        What stays in memory of an edit whose dots lie on disk.
     """
 
     label: str
@@ -34,6 +40,7 @@ class Step:
     edit: Edit | None = None
     path: Path | None = None
     of_job: bool = False
+    rest: Edit | None = None
 
     @property
     def is_open(self) -> bool:
@@ -77,9 +84,9 @@ class History:
         """The step that redoing would do again."""
         return self.steps[self.n_done] if self.n_done < len(self.steps) else None
 
-    def push(self, edit: Edit) -> None:
+    def push(self, edit: Edit, *, of_job: bool = False) -> None:
         """Add a step that has just been done; what was undone is gone."""
-        self.fill(self.open(edit.label), edit)
+        self.fill(self.open(edit.label, of_job=of_job), edit)
 
     def open(self, label: str, *, of_job: bool = False) -> Step:
         """Add a step that is still being made; what was undone is gone."""
@@ -102,19 +109,37 @@ class History:
         self._spill()
 
     def undo(self) -> Edit | None:
-        """Return the edit that takes the last step back, and count it as undone."""
-        if not self.n_done:
+        """Return the edit that takes the last step back, and count it as undone.
+
+        Raises
+        ------
+        HistoryError
+            If it lay on disk and is lost. It and all older steps are gone then.
+        """
+        step = self.undone
+        if step is None:
             return None
-        edit = self._edit(self.steps[self.n_done - 1]).inverse()
+        edit = self._edit(step)
+        if edit is None:
+            self._lose(slice(0, self.n_done), "older")
         self.n_done -= 1
         self._spill()
-        return edit
+        return edit.inverse()
 
     def redo(self) -> Edit | None:
-        """Return the edit that does the last undone step again, and count it as done."""
-        if self.redone is None:
+        """Return the edit that does the last undone step again, and count it as done.
+
+        Raises
+        ------
+        HistoryError
+            If it lay on disk and is lost. It and all later steps are gone then.
+        """
+        step = self.redone
+        if step is None:
             return None
-        edit = self._edit(self.redone)
+        edit = self._edit(step)
+        if edit is None:
+            self._lose(slice(self.n_done, None), "later")
         self.n_done += 1
         self._spill()
         return edit
@@ -130,16 +155,36 @@ class History:
         step.edit = edit
         self.n_bytes += step.n_bytes
 
-    def _edit(self, step: Step) -> Edit:
+    def _edit(self, step: Step) -> Edit | None:
+        """Return a step's edit, from disk if it lies there; None if it is lost."""
         if step.edit is not None:
             return step.edit
-        if step.path is None:
+        if step.path is None or step.rest is None:
             raise ValueError("a step that is still being made cannot be undone")
-        with np.load(step.path) as arrays:
-            edit = Edit.from_arrays(step.label, dict(arrays))
+        try:
+            with np.load(step.path) as arrays:
+                dots = DotEdit.from_arrays(dict(arrays))
+        except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
+            _log.warning("a step of the history cannot be read (%s)", error)
+            return None
+        edit = replace(step.rest, dots=dots)
         self._forget(step)
         self._hold(step, edit)
         return edit
+
+    def _lose(self, which: slice, where: str) -> NoReturn:
+        """Let go of steps that cannot be done any more, and say so."""
+        lost = self.steps[which]
+        for step in lost:
+            self._forget(step)
+        del self.steps[which]
+        self.n_done -= len(lost) if which.start == 0 else 0
+        more = f" and {len(lost) - 1:,} {where}" if len(lost) > 1 else ""
+        raise HistoryError(
+            f"“{lost[-1 if which.start == 0 else 0].label}”{more} lay in a temporary folder that "
+            "is gone; the drawing is as it was",
+            "history",
+        )
 
     def _spill(self) -> None:
         """Write the steps furthest from now to disk until the rest fits the budget."""
@@ -155,17 +200,17 @@ class History:
 
     def _write(self, step: Step, edit: Edit) -> None:
         try:
-            if self._folder is None:
+            if self._folder is None or not Path(self._folder.name).is_dir():
                 self._folder = tempfile.TemporaryDirectory(prefix="stippler-history-")
             path = Path(self._folder.name) / f"{self._n_files}.npz"
-            np.savez(path, **dict(edit.arrays()))  # type: ignore[arg-type]
+            np.savez(path, **dict(edit.dots.arrays()))  # type: ignore[arg-type]
         except OSError as error:
             self._can_spill = False
             _log.warning("the history stays in memory: it cannot be written (%s)", error)
             return
         self._n_files += 1
         self._forget(step)
-        step.path = path
+        step.path, step.rest = path, replace(edit, dots=DotEdit.none())
 
     def _forget(self, step: Step) -> None:
         """Let go of a step's edit, in memory and on disk."""
@@ -174,4 +219,4 @@ class History:
             self.n_bytes -= step.n_bytes
         if step.path is not None:
             step.path.unlink(missing_ok=True)
-            step.path = None
+            step.path = step.rest = None

@@ -84,6 +84,10 @@ class DotIndex:
             self._links = more
         relink(rows, position_mm, self._frame, self._head, self._links)
 
+    def lose(self) -> None:
+        """Take note that any dots may be anywhere; the next query begins anew."""
+        self._stale = True
+
     def drift(self, most_mm: float) -> None:
         """Take note that any dots may have moved, each by so much at most."""
         self._frame[5] += most_mm

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-
-from stippler.drawing.area import Area
+from shapely.geometry import MultiPolygon, Polygon
 
 Points = NDArray[np.float64]
 
@@ -16,20 +15,20 @@ NOWHERE = -1
 _HALVINGS = 4
 
 
-class Bounds:
+class Partition:
     """The areas of a drawing, ready to be asked; areas do not overlap but for the page's.
 
     Where another area lies on the page's, it owns its dots.
     """
 
-    def __init__(self, areas: Sequence[Area]) -> None:
-        self._outlines = [area.outline_mm for area in areas]
-        for outline in self._outlines:
+    def __init__(self, outlines: Mapping[int, Polygon | MultiPolygon]) -> None:
+        self._outlines = dict(outlines)
+        for outline in self._outlines.values():
             shapely.prepare(outline)
-        self._boxes = [
-            outline.bounds if outline.equals(shapely.box(*outline.bounds)) else None
-            for outline in self._outlines
-        ]
+        self._boxes = {
+            k: outline.bounds if outline.equals(shapely.box(*outline.bounds)) else None
+            for k, outline in self._outlines.items()
+        }
 
     def box_of(self, k: int) -> tuple[float, float, float, float] | None:
         """Return the box x0, y0, x1, y1 that an area is; None where it is something else."""
@@ -38,7 +37,7 @@ class Bounds:
     def area_at(self, points: Points) -> NDArray[np.int32]:
         """Return the area of each point; `NOWHERE` off the page."""
         found = np.full(len(points), NOWHERE, np.int32)
-        for k in range(len(self._outlines)):
+        for k in self._outlines:
             found[self._holds(k, points)] = k
         return found
 
@@ -68,7 +67,8 @@ class Bounds:
     def _own(self, points: Points, area: NDArray[np.int32]) -> NDArray[np.bool_]:
         """Return whether points lie in the areas given."""
         if len(self._outlines) == 1:
-            return np.asarray(self._holds(0, points) & (area == 0))
+            (k,) = self._outlines
+            return np.asarray(self._holds(k, points) & (area == k))
         same: NDArray[np.bool_] = self.area_at(points) == area
         return same
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.dot_edit import FIELDS, Change, DotEdit, DotRows, Shift, differs
 from stippler.drawing.dots import Dots
-from stippler.drawing.edit import FIELDS, Change, DotRows, Edit, Shift
+from stippler.drawing.drawing import Drawing
+from stippler.drawing.edit import Edit
+from stippler.drawing.records import DOT
+from stippler.drawing.reference import Reference
 from stippler.drawing.store import GONE, DotStore, Rows
 
 _BIT = {name: 1 << k for k, name in enumerate(FIELDS)}
@@ -19,14 +24,15 @@ _Pair = tuple[NDArray[np.int64], NDArray[np.generic]]
 
 
 class Recorder:
-    """Changes a store and remembers what was there when each value was first touched.
+    """Changes a drawing and remembers what was there when each value was first touched.
 
     Each change costs what it touches; nothing is kept twice for a dot that is touched again.
     """
 
-    def __init__(self, store: DotStore, label: str) -> None:
-        self._store, self.label = store, label
-        self._seen = np.zeros(store.next_id + 1024, np.uint16)  # by id: fields, row, new
+    def __init__(self, drawing: Drawing, store: DotStore, label: str) -> None:
+        self._drawing, self._store, self.label = drawing, store, label
+        store.seen[:] = 0  # fields, row, new
+        self._values: dict[str, dict[int, Any]] = {}  # before
         self._before: dict[str, list[_Pair]] = {name: [] for name in FIELDS}
         self._removed: list[DotRows] = []
         self._inserted: list[NDArray[np.int64]] = []
@@ -34,35 +40,43 @@ class Recorder:
 
     def change(self, field: str, rows: Rows, values: NDArray[np.generic]) -> None:
         """Set one field of some rows."""
-        ids = self._store.dots.id[rows]
         bit = _BIT[field]
-        fresh = (self._seen[ids] & bit) == 0
-        if fresh.any():
-            new = ids[fresh]
-            self._seen[new] |= bit
-            self._before[field].append((new, getattr(self._store.dots, field)[rows[fresh]]))
+        fresh = rows[(self._store.seen[rows] & bit) == 0]
+        if len(fresh):
+            dots = self._store.dots
+            self._store.seen[fresh] |= bit
+            self._before[field].append((dots.id[fresh], getattr(dots, field)[fresh]))
         self._store.write(field, rows, values)
 
     def insert(self, dots: Dots) -> Rows:
         """Add dots, whose ids the store has given; return their rows."""
-        if self._store.next_id > len(self._seen):
-            more = np.zeros(2 * self._store.next_id, np.uint16)
-            more[: len(self._seen)] = self._seen
-            self._seen = more
-        self._seen[dots.id] = _ALL
-        self._inserted.append(dots.id)
-        return self._store.append(dots)
+        self.note_inserted(dots.id)
+        rows = self._store.append(dots)
+        self._store.seen[rows] = _ALL
+        return rows
+
+    def note_inserted(self, ids: NDArray[np.int64]) -> None:
+        """Take note of dots that the store has got."""
+        self._inserted.append(ids)
 
     def remove(self, rows: Rows) -> Rows:
         """Remove rows, sorted and each once; return all rows that have changed."""
-        ids = self._store.dots.id[rows]
-        old = (self._seen[ids] & _NEW) == 0
-        gone = DotRows(self._store.dots.take(rows[old]), rows[old].astype(np.int64))
+        seen = self._store.seen
+        old = rows[(seen[rows] & _NEW) == 0].astype(np.int64)
+        gone = DotRows(self._store.dots.take(old), old)
+        first = (seen[old] & _ROW) == 0
+        self._rows.append((gone.dots.id[first], old[first]))
         shift = self._store.remove(rows)
         self._removed.append(gone)
-        self._note_rows(gone.dots.id, gone.rows)
-        self._note_rows(shift.ids, shift.before)
+        first = (self._store.seen[shift.after] & _ROW) == 0
+        self._store.seen[shift.after[first]] |= _ROW
+        self._rows.append((shift.ids[first], shift.before[first]))
         return np.concatenate([rows, shift.before])
+
+    def set(self, kind: str, i: int, value: Any) -> None:
+        """Set a value of another kind; None takes it out."""
+        self._values.setdefault(kind, {}).setdefault(i, self._drawing.get(kind, i))
+        self._drawing.put(kind, i, value)
 
     def finish(self) -> Edit:
         """Return the edit that all changes so far amount to."""
@@ -76,23 +90,29 @@ class Recorder:
             lost[name] = ids[gone], before[gone]
             ids, before, rows = ids[~gone], before[~gone], rows[~gone]
             after = getattr(dots, name)[rows]
-            differs = before != after
-            differs = differs.any(axis=1) if differs.ndim == 2 else differs
-            if differs.any():
-                changes[name] = Change(ids[differs], before[differs], after[differs])
+            change = Change(ids, before, after).of(differs(before, after))
+            if len(change.ids):
+                changes[name] = change
         first_ids, first_rows = _joined(self._rows, np.empty(0, np.int64))
-        return Edit(
-            self.label,
+        dots_edit = DotEdit(
             changes,
             self._all_removed(lost, first_ids, first_rows.astype(np.int64)),
             self._all_inserted(),
             self._all_shifted(first_ids, first_rows.astype(np.int64)),
         )
+        next_id = {**self._drawing.next_id, DOT: self._store.next_id}
+        return Edit(self.label, dots_edit, self._all_values(), next_id)
 
-    def _note_rows(self, ids: NDArray[np.int64], rows: Rows) -> None:
-        fresh = (self._seen[ids] & _ROW) == 0
-        self._seen[ids[fresh]] |= _ROW
-        self._rows.append((ids[fresh], rows[fresh]))
+    def _all_values(self) -> dict[str, dict[int, tuple[Any, Any]]]:
+        """Return what has become of values; references without the darkness they can work out."""
+        changed: dict[str, dict[int, tuple[Any, Any]]] = {}
+        for kind, olds in self._values.items():
+            for i, before in olds.items():
+                after = self._drawing.get(kind, i)
+                if before != after:
+                    pair = (_light(before), _light(after))
+                    changed.setdefault(kind, {})[i] = pair
+        return changed
 
     def _all_removed(
         self, lost: dict[str, _Pair], first_ids: NDArray[np.int64], first_rows: Rows
@@ -131,3 +151,7 @@ def _joined(pairs: list[_Pair], like: NDArray[np.generic]) -> _Pair:
     if not pairs:
         return np.empty(0, np.int64), like[:0]
     return np.concatenate([a for a, _ in pairs]), np.concatenate([b for _, b in pairs])
+
+
+def _light(value: Any) -> Any:
+    return value.light() if isinstance(value, Reference) else value

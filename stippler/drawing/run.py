@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.dot_edit import Change, DotEdit, DotRows, Shift, differs
 from stippler.drawing.dots import Dots
-from stippler.drawing.edit import Change, DotRows, Edit, Shift
+from stippler.drawing.edit import Edit
 from stippler.drawing.history import Step
+from stippler.drawing.store import DotStore, Rows
+from stippler.kernels.dots.merge_results import merge_positions
 
 
 class Run:
     """Where the dots were when the run began, and what its results have made of them.
+
+    Parameters
+    ----------
+    dots : Dots
+        Those that the worker has, in the order of their ids.
 
     Attributes
     ----------
@@ -16,29 +29,65 @@ class Run:
         Its place in the history.
     base : int
         The revision it began with; dots edited later are left alone.
-    after : (n, 2) float64
-        By the order of `ids`.
-    radius_after : (n,) float32
-        By the order of `ids`.
+    position_mm : (n, 2) float64
+        Where it has brought them.
+    radius_mm : (n,) float32
     """
 
     def __init__(self, step: Step, dots: Dots, base: int) -> None:
         self.step, self.base = step, base
-        self.ids = dots.id.copy()
-        self._before = dots.position_mm.copy()
-        self.after = self._before.copy()
-        self._radius_before = dots.radius_mm.copy()
-        self.radius_after = self._radius_before.copy()
+        self.ids = dots.id
+        self.position_mm, self.radius_mm = dots.position_mm.copy(), dots.radius_mm.copy()
+        self._first = (dots.position_mm.copy(), dots.radius_mm.copy())
+        self._told = self._first
+        self._rows: tuple[int, Rows] = (-1, np.empty(0, np.int64))
+
+    def move(self, store: DotStore, result: NDArray[np.float64]) -> tuple[int, float]:
+        """Merge positions; return how many dots they moved, and the longest way one went."""
+        if result.shape != self.position_mm.shape:
+            raise ValueError("the result is not one of this run")
+        dots = store.dots
+        return merge_positions(
+            self._rows_in(store),
+            np.ascontiguousarray(result, np.float64),
+            store.edited,
+            self.base,
+            dots.constraint,
+            dots.position_mm,
+            self.position_mm,
+        )
+
+    def size(self, store: DotStore, radius_mm: NDArray[np.float32]) -> int:
+        """Merge radii, as `move` does positions; return how many dots got one."""
+        if radius_mm.shape != self.radius_mm.shape:
+            raise ValueError("the result is not one of this run")
+        rows = self._rows_in(store)
+        mine = rows >= 0
+        mine[mine] = (store.edited[rows[mine]] <= self.base) & ~store.dots.fixed[rows[mine]]
+        self.radius_mm[mine] = radius_mm[mine]
+        store.write("radius_mm", rows[mine], radius_mm[mine])
+        return int(mine.sum())
 
     def edit(self) -> Edit:
-        """Return what the results have changed."""
+        """Return all that the results have changed."""
+        return self._since(self._first)
+
+    def part(self) -> Edit:
+        """Return what they have changed since the last call; these parts join to the whole."""
+        edit = self._since(self._told)
+        self._told = (self.position_mm.copy(), self.radius_mm.copy())
+        return edit
+
+    def _rows_in(self, store: DotStore) -> Rows:
+        if self._rows[0] != store.n_layouts:
+            self._rows = (store.n_layouts, store.rows(self.ids))
+        return self._rows[1]
+
+    def _since(self, before: tuple[NDArray[Any], NDArray[Any]]) -> Edit:
         changes: dict[str, Change] = {}
-        moved = (self.after != self._before).any(axis=1)
-        sized = self.radius_after != self._radius_before
-        for name, which, before, after in (
-            ("position_mm", moved, self._before, self.after),
-            ("radius_mm", sized, self._radius_before, self.radius_after),
-        ):
+        for k, name in enumerate(("position_mm", "radius_mm")):
+            old, new = before[k], getattr(self, name)
+            which = differs(old, new)
             if which.any():
-                changes[name] = Change(self.ids[which], before[which], after[which])
-        return Edit(self.step.label, changes, DotRows.none(), DotRows.none(), Shift.none())
+                changes[name] = Change(self.ids[which], old[which], new[which])
+        return Edit(self.step.label, DotEdit(changes, DotRows.none(), DotRows.none(), Shift.none()))

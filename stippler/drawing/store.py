@@ -7,16 +7,16 @@ from dataclasses import fields
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.dot_edit import DotEdit, DotRows, Shift
 from stippler.drawing.dots import Dots
-from stippler.drawing.edit import DotRows, Edit, Shift
+from stippler.drawing.ids import GONE, MAX_ID, IdTable, Rows
 from stippler.errors import GeometryError
 
-Rows = NDArray[np.int64]
+__all__ = ["GONE", "DotStore", "Rows", "union"]
 
-GONE = -1
 _SPARE = 1024
 _NAMES = tuple(f.name for f in fields(Dots))
-_MOST_IDS = 2**31 - 1
+_EDITED, _SEEN = "_edited", "_seen"
 
 
 class DotStore:
@@ -28,30 +28,39 @@ class DotStore:
     ----------
     dots : Dots
         Copied. Ids unique and not below 0.
+    next_id : int
+        No dot has had this id, or a larger one.
 
     Attributes
     ----------
     dots : Dots
         Views of the rows in use; renewed whenever dots come or go. Only the store writes to them.
-    next_id : int
-        The first id no dot has used.
+    edited : (n,) int64
+        The revision in which a person last changed each dot; 0 if never.
+    seen : (n,) uint16
+        Room for a stroke's notes on each dot; those of new dots are 0.
+    n_layouts : int
+        Grows whenever rows change hands.
     """
 
-    def __init__(self, dots: Dots) -> None:
+    def __init__(self, dots: Dots, next_id: int = 0) -> None:
         n = len(dots)
         ids = dots.id
-        if n and (int(ids.min()) < 0 or int(ids.max()) > _MOST_IDS or len(np.unique(ids)) != n):
+        if n and (int(ids.min()) < 0 or int(ids.max()) > MAX_ID or len(np.unique(ids)) != n):
             raise GeometryError("ids have to be unique and not below 0", "dots")
         self._room: dict[str, NDArray[np.generic]] = {}
-        self.next_id = int(ids.max()) + 1 if n else 0
-        self._row_of = np.full(self.next_id + _SPARE, GONE, np.int32)
-        self._row_of[ids] = np.arange(n, dtype=np.int32)
+        self.next_id = max(next_id, int(ids.max()) + 1 if n else 0)
+        self.n_layouts = 0
+        self._row_of = IdTable()
+        self._row_of.put(ids, np.arange(n, dtype=np.int64))
         for name in _NAMES:
             given = getattr(dots, name)
             room = np.empty((n + _SPARE, *given.shape[1:]), given.dtype)
             room[:n] = given
             self._room[name] = room
-        self.dots = self._views(n)
+        self._room[_EDITED] = np.zeros(n + _SPARE, np.int64)
+        self._room[_SEEN] = np.zeros(n + _SPARE, np.uint16)
+        self._use(n)
 
     def __len__(self) -> int:
         return len(self.dots)
@@ -59,21 +68,11 @@ class DotStore:
     @property
     def n_bytes(self) -> int:
         """Memory it takes, spare room included."""
-        return sum(room.nbytes for room in self._room.values()) + self._row_of.nbytes
-
-    @property
-    def row_of_id(self) -> NDArray[np.int32]:
-        """The row of each id, `GONE` where it is not there; to be read only."""
-        return self._row_of
+        return sum(room.nbytes for room in self._room.values()) + self._row_of.n_bytes
 
     def rows(self, ids: NDArray[np.int64]) -> Rows:
         """Return the rows of ids; `GONE` for dots that are not there."""
-        out = np.full(len(ids), GONE, np.int64)
-        known = ids < len(self._row_of)
-        if known.all():
-            return self._row_of[ids].astype(np.int64)
-        out[known] = self._row_of[ids[known]]
-        return out
+        return self._row_of.find(ids)
 
     def new_ids(self, n: int) -> NDArray[np.int64]:
         """Return ids that no dot has used, and use them."""
@@ -105,12 +104,18 @@ class DotStore:
         gaps = rows[rows < n_after]
         ids = self.dots.id[stay]
         shift = Shift(ids, stay, gaps)
-        self._row_of[self.dots.id[rows]] = GONE
+        self._row_of.drop(self.dots.id[rows])
         self._move(shift)
-        self.dots = self._views(n_after)
+        self._use(n_after)
         return shift
 
-    def apply(self, edit: Edit) -> Rows:
+    def cut(self, n: int, next_id: int) -> None:
+        """Take out the rows from n on, whose ids, from `next_id` on, nobody has got to know."""
+        self._row_of.drop(self.dots.id[n:])
+        self.next_id = next_id
+        self._use(n)
+
+    def apply(self, edit: DotEdit) -> Rows:
         """Apply an edit to the state it was made for; return the rows that have changed.
 
         Rows at and beyond the new number of dots are among them.
@@ -120,7 +125,7 @@ class DotStore:
         if len(edit.removed) or len(edit.inserted) or len(edit.shifted.ids):
             n_after = len(self) - len(edit.removed) + len(edit.inserted)
             most = max(n_after, most)
-            self._row_of[edit.removed.dots.id] = GONE
+            self._row_of.drop(edit.removed.dots.id)
             if n_after > len(self):
                 self._grow(n_after)
             self._move(edit.shifted)
@@ -138,22 +143,19 @@ class DotStore:
             return
         for room in self._room.values():
             room[shift.after] = room[shift.before]
-        self._row_of[shift.ids] = shift.after
+        self._row_of.put(shift.ids, shift.after)
 
     def _put(self, placed: DotRows, n_after: int) -> None:
         self._grow(n_after)
         for name in _NAMES:
             self._room[name][placed.rows] = getattr(placed.dots, name)
+        for name in (_EDITED, _SEEN):
+            self._room[name][placed.rows] = 0
         ids = placed.dots.id
         if len(ids):
-            last = int(ids.max())
-            if last >= len(self._row_of):
-                more = np.full(max(last + 1, 2 * len(self._row_of)), GONE, np.int32)
-                more[: len(self._row_of)] = self._row_of
-                self._row_of = more
-            self._row_of[ids] = placed.rows
-            self.next_id = max(self.next_id, last + 1)
-        self.dots = self._views(n_after)
+            self._row_of.put(ids, placed.rows)
+            self.next_id = max(self.next_id, int(ids.max()) + 1)
+        self._use(n_after)
 
     def _grow(self, n: int) -> None:
         if n <= len(self._room["id"]):
@@ -164,8 +166,12 @@ class DotStore:
             more[: len(room)] = room
             self._room[name] = more
 
-    def _views(self, n: int) -> Dots:
-        return Dots(**{name: room[:n] for name, room in self._room.items()})  # type: ignore[arg-type]
+    def _use(self, n: int) -> None:
+        """Look at the first n rows from now on."""
+        self.n_layouts += 1
+        self.dots = Dots(**{name: self._room[name][:n] for name in _NAMES})  # type: ignore[arg-type]
+        self.edited: NDArray[np.int64] = self._room[_EDITED][:n]  # type: ignore[assignment]
+        self.seen: NDArray[np.uint16] = self._room[_SEEN][:n]  # type: ignore[assignment]
 
 
 def union(parts: list[Rows], n: int) -> Rows:

@@ -219,10 +219,15 @@ class Painting:
         document = self._document
         if document is None or self.is_busy:
             return
-        while document.history.n_done > n_done and self._session.paintable:
+        history = document.history
+        while (before := history.n_done) > n_done and self._session.paintable:
             self._session.undo()
-        while document.history.n_done < min(n_done, len(document.history.steps)):
+            if history.n_done != before - 1:
+                return  # steps were lost, which is said
+        while (before := history.n_done) < min(n_done, len(history.steps)):
             self._session.redo()
+            if history.n_done == before:
+                return
 
     def undo(self) -> None:
         """Take the last step back; not within a stroke."""

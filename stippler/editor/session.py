@@ -12,7 +12,7 @@ from stippler.drawing.adjustment import NEUTRAL
 from stippler.editor.exports import Exports
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
-from stippler.errors import ParameterError
+from stippler.errors import ParameterError, StipplerError
 from stippler.jobs import work
 from stippler.jobs.work import Source, Work
 from stippler.stippling.fill import Filling, fill_drawing
@@ -190,13 +190,20 @@ class Session:
             self.stop()
             if document.history.undone is not step:
                 return  # it had not moved anything yet, and is no step
-        document.undo()
+        self._guarded(document.undo)
 
     def redo(self) -> None:
         """Do the last undone step again."""
         document = self.document
         if document is not None and self.paintable and not document.in_stroke:
-            document.redo()
+            self._guarded(document.redo)
+
+    def _guarded(self, act: Callable[[], object]) -> None:
+        """Do something; a person's or a file's error is said."""
+        try:
+            act()
+        except StipplerError as error:
+            self.messages.say(str(error), WARNING)
 
     def pause(self) -> None:
         """Hold the job where it is."""
@@ -389,13 +396,22 @@ class Session:
 
         assert self._asked is not None
         if self.drawing is not None and self._asked.is_read_as(self.source):
-            self.drawing.reference = reference  # adjusted anew; page, dots and history stay
-            self.revision += 1
+            self._set_reference(reference)  # adjusted anew; page, dots and history stay
         else:
             self._open_page(Page(reference.width_mm, reference.height_mm), reference)
             if self.source is None or self.source.path != self._asked.path:
                 self.adjustment = self._asked.adjustment
         self.source = self._asked
+
+    def _set_reference(self, reference: Reference) -> None:
+        assert self.drawing is not None
+        if self.document is None:
+            self.drawing.reference = reference
+        else:
+            self.document.begin("Adjust the picture")
+            self.document.set("reference", 0, reference)
+            self.document.commit(of_job=True)
+        self.revision += 1
 
     def _open_page(self, page: Page, reference: Reference | None) -> None:
         from stippler.drawing.drawing import Drawing
@@ -436,8 +452,7 @@ class Session:
                 self.document.begin("Stipple")
                 self.document.remove(np.arange(len(self.document.dots)))
                 self.document.insert(made)
-                if not self.document.commit().is_empty:
-                    self.document.history.steps[-1].of_job = True
+                self.document.commit(of_job=True)
         self.position_mm = self.radius_mm = None
         if self.document is None:
             self.document = Document(self.drawing)

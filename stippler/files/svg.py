@@ -62,7 +62,7 @@ def svg_chunks(drawing: Drawing, *, decimals: int | None = None) -> Iterator[byt
             f"{decimals} is no number of decimals", "decimals", f"give 0 to {MAX_DECIMALS}"
         )
     yield _head(drawing)
-    for index, area in enumerate(drawing.areas):
+    for index, area in sorted(drawing.areas.items()):
         rows = np.flatnonzero(drawing.dots.area == index)
         if len(rows):
             yield f'<g id="area-{index}" data-name={quoteattr(area.name)}>\n'.encode()

@@ -97,5 +97,5 @@ def _dots(rows: list[tuple[float, ...]]) -> Dots:
     values = np.array(rows, np.float64)
     dots = Dots.round(values[:, :2], values[:, 2])
     dots.elongation[:], dots.angle_rad[:], dots.roughness[:] = values[:, 3:6].T
-    dots.seed[:], dots.area[:], dots.fixed[:] = values[:, 6:9].T
+    dots.seed[:], dots.area[:], dots.constraint[:] = values[:, 6:9].T
     return dots

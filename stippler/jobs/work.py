@@ -201,4 +201,4 @@ def export_drawing(
 
 def frozen(drawing: Drawing) -> Drawing:
     """Copy what an export reads, so that the drawing may change meanwhile."""
-    return replace(drawing, areas=list(drawing.areas), dots=drawing.dots.copy())
+    return drawing.snapshot()

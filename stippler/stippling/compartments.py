@@ -11,9 +11,9 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.validation import floats
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.border_edges import BorderEdges
-from stippler.stippling.validation import floats
 
 Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
 

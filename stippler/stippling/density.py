@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing.validation import floats
 from stippler.errors import ParameterError
 from stippler.kernels.cells.field import sum_rows
 from stippler.kernels.cells.tables import Field
 from stippler.kernels.machine.pool import parallel_for
-from stippler.stippling.validation import floats
 
 _DENSEST = 1e30  # sums of the kernels' float32 go no further
 

@@ -12,13 +12,13 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
 from stippler.stippling.spacing import METHODS, Rules, Wanted
 from stippler.stippling.tessellation import Tessellation
-from stippler.stippling.validation import floats, whole
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 

@@ -19,7 +19,6 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
 
 NAMES = [f.name for f in fields(Dots)]
 SIZE = (20.0, 12.0)
@@ -50,11 +49,11 @@ def same(a, b):
 def some_drawing():
     rng = np.random.default_rng(7)
     drawing = Drawing.blank(Page(*SIZE))
-    drawing.areas.append(Area("ring", RING, Style()))
+    drawing.areas[1] = Area("ring", RING)
     ramp = np.tile(np.linspace(0, 1, 40, dtype=np.float32), (24, 1))
     drawing.reference = Reference(ramp, SIZE[0])
     drawing.dots = Dots.round(rng.uniform((0, 0), SIZE, (70, 2)), rng.uniform(0.1, 0.3, 70))
-    drawing.dots.fixed[:] = rng.uniform(size=70) < 0.15
+    drawing.dots.constraint[:] = rng.uniform(size=70) < 0.15
     return drawing
 
 
@@ -65,7 +64,7 @@ class PaintingMachine(RuleBasedStateMachine):
         super().__init__()
         drawing = some_drawing()
         self.document = Document(drawing, budget_bytes=4000)
-        at = self.document.bounds.area_at(drawing.dots.position_mm)
+        at = self.document.partition.area_at(drawing.dots.position_mm)
         self.document.begin("areas")
         self.document.change("area", np.arange(len(at)), at.astype(np.int32))
         self.document.commit()
@@ -178,10 +177,10 @@ class PaintingMachine(RuleBasedStateMachine):
         run, rng = self.document._run, np.random.default_rng(seed)
         if run is None:
             return
-        aim = run.after + rng.normal(0, 1.0, run.after.shape)
+        aim = run.position_mm + rng.normal(0, 1.0, run.position_mm.shape)
         rows = self.document.rows(run.ids)
         area = np.where(rows >= 0, self.document.dots.area[rows], 0).astype(np.int32)
-        self.document.merge(self.document.bounds.confine(run.after, aim, area))
+        self.document.merge(self.document.partition.confine(run.position_mm, aim, area))
         self.document.merge_radii(rng.uniform(0.1, 0.4, len(run.ids)).astype(np.float32))
 
     @precondition(lambda self: self.run_size)
@@ -219,7 +218,7 @@ class PaintingMachine(RuleBasedStateMachine):
         document, dots = self.document, self.document.dots
         assert len(np.unique(dots.id)) == len(dots)
         assert np.array_equal(document.rows(dots.id), np.arange(len(dots)))
-        assert np.array_equal(document.bounds.area_at(dots.position_mm), dots.area)
+        assert np.array_equal(document.partition.area_at(dots.position_mm), dots.area)
         assert (dots.radius_mm > 0).all()
         view = (3.0, 2.0, 13.0, 8.5)
         x, y = dots.position_mm.T

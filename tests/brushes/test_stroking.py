@@ -39,10 +39,10 @@ def make_editing(n=600, seed=1, hole=False):
         ring = Polygon(
             [(0, 0), (40, 0), (40, 30), (0, 30)], [[(18, 13), (22, 13), (22, 17), (18, 17)]]
         )
-        drawing.areas = [Area("ring", ring)]
+        drawing.areas = {0: Area("ring", ring)}
         points = points[(np.abs(points - (20, 15)) > 2.001).any(axis=1)]
     drawing.dots = Dots.round(points, rng.uniform(0.1, 0.3, len(points)))
-    drawing.dots.fixed[:] = rng.uniform(size=len(points)) < 0.1
+    drawing.dots.constraint[:] = rng.uniform(size=len(points)) < 0.1
     return Document(drawing)
 
 
@@ -99,7 +99,7 @@ def test_whatever_a_brush_does_can_be_taken_back_and_keeps_the_rules(brush, corn
     dots = document.dots
     end = dots.copy()
     assert len(np.unique(dots.id)) == len(dots)
-    assert (document.bounds.area_at(dots.position_mm) == dots.area).all()
+    assert (document.partition.area_at(dots.position_mm) == dots.area).all()
     stay = np.isin(dots.id, start.id[start.fixed])
     old = start.take(np.searchsorted(start.id, dots.id[stay]))
     assert np.array_equal(dots.position_mm[stay], old.position_mm)
@@ -309,7 +309,7 @@ def test_a_dot_is_dragged_and_a_fixed_one_is_not():
     document = make_editing(0)
     document.begin("two")
     document.insert(Dots.round([(10, 10), (20, 10)], 0.2))
-    document.change("fixed", np.array([1]), np.array([True]))
+    document.change("constraint", np.array([1]), np.array([1], np.int8))
     document.commit()
     draw(document, Brush("g", "drag"), [(10.5, 10, 1), (15.5, 20, 1)])
     draw(document, Brush("g", "drag"), [(20.5, 10, 1), (25, 25, 1)])

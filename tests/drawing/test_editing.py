@@ -9,10 +9,15 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 from shapely.geometry import Polygon
 
+from stippler.drawing.adjustment import Adjustment
 from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.edit import Edit
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from tests.conftest import EXAMPLES
 
 NAMES = [f.name for f in fields(Dots)]
 SHARES = st.lists(st.floats(0, 0.999), min_size=1, max_size=6)
@@ -26,14 +31,29 @@ def same(a, b):
 def some_dots(n=40, seed=3):
     rng = np.random.default_rng(seed)
     dots = Dots.round(rng.uniform(0, 1, (n, 2)) * (20, 10), rng.uniform(0.1, 0.3, n))
-    dots.fixed[:] = rng.uniform(size=n) < 0.2
+    dots.constraint[:] = rng.uniform(size=n) < 0.2
     return dots
 
 
 def some_drawing(n=40):
     drawing = Drawing.blank(Page(20, 10))
     drawing.dots = some_dots(n)
+    drawing.reference = Reference(np.linspace(0, 1, 200, dtype=np.float32).reshape(10, 20), 20.0)
     return drawing
+
+
+def values(drawing):
+    """All that is no dot: values are frozen, so holding them is a copy."""
+    tables = {kind: dict(drawing.table(kind)) for kind in ("area", "style", "line", "pattern")}
+    return tables | {"page": drawing.page, "reference": drawing.reference}
+
+
+def whole(drawing):
+    return drawing.dots.copy(), values(drawing)
+
+
+def alike(a, b):
+    return same(a[0], b[0]) and a[1] == b[1]
 
 
 class EditingMachine(RuleBasedStateMachine):
@@ -44,11 +64,14 @@ class EditingMachine(RuleBasedStateMachine):
         self.start = some_dots()
         drawing = some_drawing()
         self.document = Document(drawing, budget_bytes=2000)  # so that steps lie on disk, too
-        self.states = [self.start.copy()]  # without runs: what undo and redo lead to
+        self.states = [whole(drawing)]  # without runs: what undo and redo lead to
+        self.entries = []
+        self.document.follow(lambda entry: self.entries.append((entry, entry.edit)))
+        self.most_id = {}
         self.at = 0
         self.before = None
         self.moved_by_run = False
-        self.shown = {}
+        self.shown, self.cursor = {}, 0
 
     def teardown(self):
         self.document.history.close()
@@ -59,8 +82,28 @@ class EditingMachine(RuleBasedStateMachine):
 
     def ensure_stroke(self):
         if not self.document.in_stroke:
-            self.before = self.document.dots.copy()
+            self.before = whole(self.document.drawing)
             self.document.begin("stroke")
+
+    @rule(dots=st.integers(1, 9), name=st.sampled_from("abc"))
+    def value(self, dots, name):
+        self.ensure_stroke()
+        document, drawing = self.document, self.document.drawing
+        i = document.add("style", Style(n_dots=dots, name=name))
+        assert i > self.most_id.get("style", 0)
+        self.most_id["style"] = i
+        x = float(dots)
+        area = Area(name, Polygon([(x, 1), (x + 6, 2), (x + 5, 9)]), style=i)
+        document.set("area", document.add("area", area), None if dots == 1 else area)
+        document.set("reference", 0, drawing.reference.adjusted(Adjustment(contrast=dots / 10)))
+        document.own_by_place(np.arange(len(document.dots)))
+
+    @rule(which=st.integers(1, 20))
+    def drop(self, which):
+        self.ensure_stroke()
+        rows = np.flatnonzero(self.document.dots.area == which)
+        self.document.change("area", rows, np.zeros(len(rows), np.int32))
+        self.document.set("area", which, None)
 
     @rule(shares=SHARES, dx=st.floats(-3, 3), dy=st.floats(-3, 3))
     def move(self, shares, dx, dy):
@@ -75,7 +118,7 @@ class EditingMachine(RuleBasedStateMachine):
         self.ensure_stroke()
         rows = self.rows(shares)
         self.document.change("radius_mm", rows, np.full(len(rows), radius, np.float32))
-        self.document.change("fixed", rows, np.full(len(rows), fixed))
+        self.document.change("constraint", rows, np.full(len(rows), fixed, np.int8))
 
     @rule(places=PLACES)
     def insert(self, places):
@@ -92,30 +135,93 @@ class EditingMachine(RuleBasedStateMachine):
     def commit(self):
         edit = self.document.commit()
         if edit.is_empty:
+            assert alike(whole(self.document.drawing), self.before)
             return
         del self.states[self.at + 1 :]
-        self.states.append(self.document.dots.copy())
+        self.states.append(whole(self.document.drawing))
         self.at += 1
 
     @precondition(lambda self: self.document.in_stroke and not self.document.in_run)
     @rule()
     def cancel(self):
         self.document.cancel()
-        assert same(self.document.dots, self.before)
+        assert alike(whole(self.document.drawing), self.before)
 
     @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
     @rule()
     def undo(self):
         assert self.document.undo() == (self.at > 0)
         self.at = max(self.at - 1, 0)
-        assert same(self.document.dots, self.states[self.at])
+        assert alike(whole(self.document.drawing), self.states[self.at])
 
     @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
     @rule()
     def redo(self):
         assert self.document.redo() == (self.at + 1 < len(self.states))
         self.at = min(self.at + 1, len(self.states) - 1)
-        assert same(self.document.dots, self.states[self.at])
+        assert alike(whole(self.document.drawing), self.states[self.at])
+
+    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @rule(seed=st.integers(0, 9), sizes=st.lists(st.integers(0, 9), max_size=4))
+    def make(self, seed, sizes):
+        """A draft: it stands among the dots as it grows, and is one step."""
+        document, rng = self.document, np.random.default_rng(seed)
+        others = document.dots.id[document.dots.area != 0].copy()
+        document.begin_draft("Stipple", 0, "quill")
+        n = 0
+        for n in sizes:
+            document.draft(rng.uniform(0, 1, (n, 2)) * (20, 10), np.full(n, 0.2, np.float32))
+            assert len(document.dots) == len(others) + n
+            with pytest.raises(ValueError, match="being made"):
+                document.begin("stroke")
+        document.draft(rng.uniform(0, 1, (n, 2)) * (20, 10), np.full(n, 0.3, np.float32))
+        edit = document.end_draft()
+        assert set(others) <= set(document.dots.id)
+        if edit.is_empty:
+            return
+        if len(self.states) == 1 and not document.history.steps:
+            self.states[0] = whole(document.drawing)  # it began so
+            return
+        del self.states[self.at + 1 :]
+        self.states.append(whole(document.drawing))
+        self.at += 1
+
+    @precondition(lambda self: not self.document.in_stroke)
+    @rule(which=st.data())
+    def squash(self, which):
+        """Steps joined are one edit that leads to the same, and comes back; through arrays, too."""
+        steps = self.document.history.steps[: self.at]
+        edits = [step.edit for step in steps if step.edit is not None]
+        if len(edits) < 2 or any(step.edit is None for step in steps[-len(edits) :]):
+            return
+        first = self.at - len(edits)
+        cut = which.draw(st.integers(1, len(edits) - 1))
+        left, right = joined(edits[:cut]), joined(edits[cut:])
+        drawing = at_state(self.states[first])
+        other = Document(drawing)
+        edit = left.then(right)
+        pictures = {p.digest: p for p in edit.pictures.values()}
+        other._apply(Edit.from_arrays(dict(edit.arrays()), pictures))
+        assert alike(whole(drawing), self.states[self.at])
+        other._apply(edit.inverse())
+        assert alike(whole(drawing), self.states[first])
+        assert edit.then(edit.inverse()).is_empty
+
+    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @rule()
+    def recover(self):
+        """What was told, done again from the start, makes the same drawing with its history."""
+        drawing = some_drawing()
+        other = Document(drawing)
+        for entry, _ in self.entries:
+            other.replay(entry)
+        assert alike(whole(drawing), whole(self.document.drawing))
+        mine, others = self.document.history, other.history
+        assert [s.label for s in mine.steps] == [s.label for s in others.steps]
+        assert mine.n_done == others.n_done
+        while other.undo():
+            pass
+        assert alike(whole(drawing), self.states[0])
 
     @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
     @rule(seed=st.integers(0, 9), strokes=st.integers(0, 2))
@@ -142,6 +248,7 @@ class EditingMachine(RuleBasedStateMachine):
                 kept = there >= 0
                 assert np.array_equal(document.dots.position_mm[there[kept]], hand[1][kept])
                 document.commit()
+            document.tell_run()
         document.end_run()
         end = document.dots.copy()
         n_done = document.history.n_done
@@ -150,7 +257,7 @@ class EditingMachine(RuleBasedStateMachine):
         assert same(document.dots, start)
         del self.states[self.at + 1 :]
         while document.redo():
-            self.states.append(document.dots.copy())
+            self.states.append(whole(document.drawing))
             self.at += 1
         assert document.history.n_done == n_done == self.at
         assert same(document.dots, end)
@@ -171,7 +278,8 @@ class EditingMachine(RuleBasedStateMachine):
     @invariant()
     def changes_are_told(self):
         """What the GPU was told adds up to what there is."""
-        changed = self.document.take_changed()
+        changed = self.document.changes.since(self.cursor)
+        self.cursor = changed.cursor
         rows, dots = changed.rows, self.document.dots
         if changed.places and "id" in self.shown and len(dots) == len(self.shown["id"]):
             self.shown["position_mm"] = dots.position_mm.copy()
@@ -183,8 +291,27 @@ class EditingMachine(RuleBasedStateMachine):
             assert np.array_equal(self.shown[name], getattr(dots, name))
 
 
+def joined(edits):
+    whole = edits[0]
+    for edit in edits[1:]:
+        whole = whole.then(edit)
+    return whole
+
+
+def at_state(state):
+    drawing = some_drawing()
+    drawing.dots = state[0].copy()
+    for kind, table in state[1].items():
+        if isinstance(table, dict):
+            drawing.table(kind).clear()
+            drawing.table(kind).update(table)
+        else:
+            drawing.put(kind, 0, table)
+    return drawing
+
+
 TestEditing = EditingMachine.TestCase
-TestEditing.settings = settings(max_examples=60, stateful_step_count=30)
+TestEditing.settings = settings(max_examples=60 * EXAMPLES, stateful_step_count=30)
 
 
 def test_a_stroke_is_one_step_whatever_it_did():
@@ -195,7 +322,7 @@ def test_a_stroke_is_one_step_whatever_it_did():
     document.remove(np.array([3, 4]))
     edit = document.commit()
     assert len(document.history.steps) == 1
-    assert len(edit.changes["position_mm"].ids) <= 10
+    assert len(edit.dots.changes["position_mm"].ids) <= 10
     document.undo()
     assert same(document.dots, some_dots())
 
@@ -260,7 +387,7 @@ def test_a_run_keeps_going_below_strokes_that_were_undone():
 def test_dots_do_not_leave_an_area_with_a_hole():
     drawing = Drawing.blank(Page(10, 10))
     ring = Polygon([(0, 0), (10, 0), (10, 10), (0, 10)], [[(4, 4), (6, 4), (6, 6), (4, 6)]])
-    drawing.areas = [Area("ring", ring)]
+    drawing.areas = {0: Area("ring", ring)}
     drawing.dots = Dots.round([(3, 5), (9, 9)], 0.2)
     document = Document(drawing)
     document.begin("push")

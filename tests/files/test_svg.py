@@ -132,7 +132,7 @@ def test_numbers_are_written_in_the_fewest_characters(value, decimals):
 
 def test_dots_are_grouped_by_area():
     page = Page(40, 30)
-    areas = [Area("page", box(0, 0, 40, 30)), Area('a "b" & <c>', box(0, 0, 20, 30))]
+    areas = {0: Area("page", box(0, 0, 40, 30)), 1: Area('a "b" & <c>', box(0, 0, 20, 30))}
     dots = Dots.round([(5, 5), (30, 5), (6, 6)], 1.0)
     dots.area[:] = [1, 0, 1]
     root = parsed(Drawing(page, areas, dots))

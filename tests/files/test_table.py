@@ -6,7 +6,7 @@ import io
 import numpy as np
 import pytest
 
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import FIXED, Dots
 from stippler.errors import TableError
 from stippler.files.table import COLUMNS, csv_chunks, read_csv
 
@@ -18,7 +18,7 @@ def test_every_value_comes_back():
     dots.elongation[:] = rng.uniform(1, 4, n)
     dots.angle_rad[:] = rng.uniform(-3, 3, n)
     dots.roughness[:] = rng.uniform(0, 1, n)
-    dots.fixed[::7] = True
+    dots.constraint[::7] = FIXED
     text = b"".join(csv_chunks(dots)).decode()
     assert text.splitlines()[0] == COLUMNS
     rows = np.array([[float(v) for v in row] for row in list(csv.reader(io.StringIO(text)))[1:]])
@@ -43,7 +43,7 @@ def test_what_is_written_is_read(tmp_path):
     dots.elongation[:] = rng.uniform(1, 4, n)
     dots.angle_rad[:] = rng.uniform(-3, 3, n)
     dots.roughness[:] = rng.uniform(0, 1, n)
-    dots.fixed[::7] = True
+    dots.constraint[::7] = FIXED
     text = b"".join(csv_chunks(dots))
     (tmp_path / "dots.csv").write_bytes(text)
     assert b"".join(csv_chunks(read_csv(tmp_path / "dots.csv"))) == text

@@ -4,7 +4,7 @@ import numpy as np
 
 from stippler import headless
 from stippler.camera import Camera
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import FIXED, Dots
 from stippler.drawing.reference import Reference
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
@@ -18,7 +18,7 @@ def test_all_pixels_are_opaque() -> None:
     target = ctx.framebuffer([ctx.texture(SIZE, 4)])
     renderer.set_page(40, 30)
     dots = Dots.round([(10, 10), (30, 20)], 4.0)
-    dots.fixed[0] = True
+    dots.constraint[0] = FIXED
     renderer.set_dots(dots)
     renderer.set_reference(Reference(np.full((30, 40), 0.7, np.float32), 40.0), 0.5)
     renderer.set_tip((20.0, 15.0), 8.0)

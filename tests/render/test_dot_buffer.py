@@ -30,7 +30,7 @@ def test_dots_that_come_go_and_move_between_uploads(ctx, seed: int) -> None:
     document = Document(drawing)
     buffer, fresh = DotBuffer(ctx), DotBuffer(ctx)
     none = np.zeros(2000, np.bool_)
-    document.take_changed()
+    cursor = document.changes.now
     buffer.set(document.dots, none[:400], ORIGIN)
     for _ in range(30):
         document.begin("stroke")
@@ -47,7 +47,8 @@ def test_dots_that_come_go_and_move_between_uploads(ctx, seed: int) -> None:
         document.commit()
         if rng.random() < 0.3:
             document.undo()
-        n, rows = len(document.dots), document.take_changed().rows
+        changed = document.changes.since(cursor)
+        n, rows, cursor = len(document.dots), changed.rows, changed.cursor
         assert rows is not None
         buffer.update(document.dots, rows, none[:n], ORIGIN)
         fresh.set(document.dots, none[:n], ORIGIN)

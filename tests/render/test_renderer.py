@@ -9,7 +9,7 @@ import pytest
 
 from stippler import headless
 from stippler.camera import Camera
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import FIXED, Dots
 from stippler.drawing.drawing import Page
 from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
@@ -329,7 +329,7 @@ def test_polarity_is_a_matter_of_colours(page, canvas, many):
 
 def test_fixed_and_selected_dots_are_marked(page, canvas, shaped):
     dots = shaped([(10.0, 15.0), (20.0, 15.0), (30.0, 15.0)], 2.0)
-    dots.fixed[0] = True
+    dots.constraint[0] = FIXED
     page.set_dots(dots, np.array([False, False, True]))
     target = canvas(SIZE)
     page.draw(FIT, SIZE, target.framebuffer, ink=BLACK, marks=((1, 0, 0), (0, 0, 1)))
@@ -379,7 +379,7 @@ def test_a_flipped_or_turned_page_is_the_picture_flipped_or_turned(page, ink, ma
 
 def test_dots_can_be_left_out(page, canvas, many):
     dots = many()
-    dots.fixed[:] = True
+    dots.constraint[:] = FIXED
     page.set_dots(dots)
     page.set_reference(Reference(np.full((3, 4), 0.4, np.float32), 40.0), 1.0)
     target = canvas(SIZE)

@@ -16,7 +16,7 @@ from stippler.stippling.fill import Filling, fill_drawing
 @pytest.mark.parametrize("arrangement", ["hexagonal", "random"])
 def test_an_area_is_filled_in_one_step(arrangement) -> None:
     drawing = Drawing.blank(Page(60.0, 40.0))
-    drawing.areas.append(Area("corner", box(0, 0, 20, 10)))
+    drawing.areas[1] = Area("corner", box(0, 0, 20, 10))
     document = Document(drawing)
     filling = Filling(200, arrangement, 0.25, seed=3)
     first = fill_drawing(drawing, document, filling)

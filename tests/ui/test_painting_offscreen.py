@@ -112,7 +112,7 @@ def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
     assert session.relaxing
     edit = document.history.steps[-1].edit
     assert edit is not None
-    change = edit.changes["position_mm"]
+    change = edit.dots.changes["position_mm"]
     at = session.done
     desk.host.until(lambda: session.done > at + 3, "more steps")
     assert np.array_equal(document.dots.position_mm[document.rows(change.ids)], change.after)
@@ -235,11 +235,11 @@ def test_dots_that_are_still_being_stippled_are_painted_on(desk, picture: Path) 
     assert session.done > 1
     (run, stroke) = document.history.steps
     assert run.is_open
-    erased = stroke.edit.removed.dots.id
+    erased = stroke.edit.dots.removed.dots.id
     assert len(erased)
     desk.host.key("b")
     paint(desk, (50, 35), (60, 35))
-    resized = document.history.steps[-1].edit.changes["radius_mm"]
+    resized = document.history.steps[-1].edit.dots.changes["radius_mm"]
     at = session.done
     desk.host.until(lambda: session.done > at + 3, "more steps")
     session.stop()
@@ -265,7 +265,7 @@ def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
     paint(desk, (50, 45), (70, 45))
     assert session.phase == "paused"
     before = session.document.dots.copy()
-    touched = session.document.history.steps[-1].edit.changes["radius_mm"].ids
+    touched = session.document.history.steps[-1].edit.dots.changes["radius_mm"].ids
     session.resume()
     desk.host.until(lambda: not session.busy, "the end")
     assert session.phase == "done"

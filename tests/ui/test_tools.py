@@ -12,7 +12,7 @@ from stippler.brushes import effects
 from stippler.brushes.kinds import KINDS
 from stippler.brushes.presets import load_brushes
 from stippler.drawing.document import Document
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import FIXED, Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.editor.events import (
     FocusLost,
@@ -39,7 +39,7 @@ def make_editing(n=200):
     rng = np.random.default_rng(4)
     drawing = Drawing.blank(Page(40, 30))
     drawing.dots = Dots.round(rng.uniform(0, 1, (n, 2)) * (40, 30), 0.2)
-    drawing.dots.fixed[::9] = True
+    drawing.dots.constraint[::9] = FIXED
     return Document(drawing)
 
 
@@ -366,7 +366,7 @@ class ToolMachine(RuleBasedStateMachine):
         dots = self.hands.document.dots
         assert len(np.unique(dots.id)) == len(dots)
         assert np.array_equal(self.hands.document.rows(dots.id), np.arange(len(dots)))
-        assert (self.hands.document.bounds.area_at(dots.position_mm) == dots.area).all()
+        assert (self.hands.document.partition.area_at(dots.position_mm) == dots.area).all()
         now = dict(zip(dots.id[dots.fixed].tolist(), dots.position_mm[dots.fixed], strict=True))
         for key in now.keys() & self.fixed.keys():
             assert np.array_equal(now[key], self.fixed[key])

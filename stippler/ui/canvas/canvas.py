@@ -49,6 +49,7 @@ class Canvas:
         self._drawn: object = None
         self._uploaded: object = None
         self._edited: Document | None = None  # whose dots are on the GPU
+        self._cursor = 0  # how far its changes are
         self._selected: NDArray[np.int64] = np.empty(0, np.int64)
         self._lens: LensPass | None = None  # with the first look through it
         self._glass: Glass | None = None  # of this frame
@@ -209,7 +210,8 @@ class Canvas:
         self._uploaded, self._edited = content, document
 
     def _upload_edited(self, renderer: Renderer, document: Document, selection: Chosen) -> None:
-        changed, selected = document.take_changed(), selection.mask(document)
+        cursor = self._cursor if document is self._edited else 0
+        changed, selected = document.changes.since(cursor), selection.mask(document)
         dots, rows = document.dots, changed.rows
         if document is not self._edited or rows is None or renderer.n_dots == 0:
             renderer.set_dots(dots, selected)
@@ -222,7 +224,7 @@ class Canvas:
                 renderer.update_dots(dots, rows, selected)
             if changed.places:
                 renderer.set_positions(dots.position_mm, dots.radius_mm)
-        self._selected = selection.ids
+        self._selected, self._cursor = selection.ids, changed.cursor
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
         if self._texture is None or self._texture.size != size_px:

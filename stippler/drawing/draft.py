@@ -1,0 +1,63 @@
+"""Dots that a run is making: in the document like all others, and one step when it ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Drawing
+from stippler.drawing.edit import Edit
+from stippler.drawing.pens import Pen
+from stippler.drawing.recorder import Recorder
+from stippler.drawing.store import DotStore, Rows
+
+
+class Draft:
+    """The dots of one area while they are made; they stand in the last rows.
+
+    Their ids are the first that were free when the draft began, so they do not depend on how many
+    results a person got to see.
+
+    Parameters
+    ----------
+    replaced : rows
+        Of the dots that give way.
+    pen : Pen
+        Gives them their shapes.
+    """
+
+    def __init__(
+        self, drawing: Drawing, store: DotStore, label: str, area: int, replaced: Rows, pen: Pen
+    ) -> None:
+        self._store, self._pen, self.area = store, pen, area
+        self._recorder = Recorder(drawing, store, label)
+        self._first_id = store.next_id
+        if len(replaced):
+            self._recorder.remove(replaced)
+        self._n_others = len(store)
+
+    @property
+    def n_dots(self) -> int:
+        """How many dots it has so far."""
+        return len(self._store) - self._n_others
+
+    def show(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> bool:
+        """Take the dots as they are now; return whether they are the same ones, moved or sized."""
+        store, n = self._store, len(position_mm)
+        if n == self.n_dots:
+            rows = slice(self._n_others, len(store))
+            store.dots.position_mm[rows] = position_mm
+            store.dots.radius_mm[rows] = radius_mm
+            return True
+        store.cut(self._n_others, self._first_id)
+        dots = self._pen.drawn(Dots.round(position_mm, radius_mm, area=self.area))
+        store.append(replace(dots, id=store.new_ids(n)))
+        return False
+
+    def finish(self) -> Edit:
+        """Return the edit that it amounts to."""
+        self._recorder.note_inserted(self._store.dots.id[self._n_others :].copy())
+        return self._recorder.finish()

@@ -1,0 +1,58 @@
+"""The kinds of values that a drawing holds beside its dots, each under an id of its own.
+
+A value is a frozen dataclass, equal by what it holds, with `to_json` (plain JSON types) and
+`from_json`. A new kind is one more line in `_READERS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from stippler.drawing.area import Area
+from stippler.drawing.page import Page
+from stippler.drawing.reference import Picture, Reference
+from stippler.drawing.style import Style
+
+PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE = (
+    "page",
+    "reference",
+    "area",
+    "line",
+    "pattern",
+    "style",
+)
+SINGLE = (PAGE, REFERENCE)
+"""Kinds of which a drawing holds one value, under the id 0; the page is always there."""
+
+DOT = "dot"
+"""Not a kind of value: what `next_id` calls the ids of dots by."""
+
+
+class Record(Protocol):
+    """A value that a drawing holds."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it in JSON's types."""
+        ...
+
+
+_READERS: dict[str, Callable[[Mapping[str, Any]], Record]] = {
+    PAGE: Page.from_json,
+    AREA: Area.from_json,
+    STYLE: Style.from_json,
+}
+KINDS = (PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE)
+
+
+def value_from_json(kind: str, data: Mapping[str, Any], pictures: Mapping[str, Picture]) -> Record:
+    """Make a value of what its `to_json` gave.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If the kind, a field or a picture is not known, or a value is out of range.
+    """
+    if kind == REFERENCE:
+        return Reference.from_json(data, pictures)
+    return _READERS[kind](data)
