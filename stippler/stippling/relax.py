@@ -12,12 +12,13 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing.style import SPACINGS
 from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
-from stippler.stippling.spacing import METHODS, Rules, Wanted
+from stippler.stippling.spacing import Rules, Wanted
 from stippler.stippling.tessellation import Tessellation
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
@@ -108,9 +109,9 @@ class Relaxation:
         wanted: Wanted | None = None,
         radius_mm: ArrayLike | None = None,
     ) -> None:
-        if method not in METHODS:
+        if method not in SPACINGS:
             raise ParameterError(
-                f"{method!r} is not known", "method", f"give one of {', '.join(METHODS)}"
+                f"{method!r} is not known", "method", f"give one of {', '.join(SPACINGS)}"
             )
         self._method = method
         xy = _checked_points(points)

@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 
 from stippler.stippling.tone import DotRule
 
-METHODS = ("even", "lloyd", "delaunay-mean", "springs")
-"""Ways to space dots: the rules, Lloyd alone, and the paper's comparisons."""
-
 _LEVELS = 1025
 
 
@@ -41,16 +38,16 @@ class Rules:
         Share of every move that goes to the ink's centroid.
     """
 
-    near: float = 0.85
-    base: float = 0.413
-    slope: float = 0.53
+    near: float = 0.87
+    base: float = -0.01
+    slope: float = 1.0
     cap: float = 0.97
-    hole: float = 1.17
+    hole: float = 1.15
     narrow: float = 0.6
     level: float = 0.3
     pull: float = 0.5
-    gain: float = 6.0
-    low: float = 0.05
+    gain: float = 8.0
+    low: float = 0.1
     least: float = 0.0
 
     def array(self, scale: float) -> NDArray[np.float64]:
@@ -59,6 +56,12 @@ class Rules:
             [self.near, self.base, self.slope, self.cap, self.hole, self.narrow, self.level,
              self.pull, self.gain, self.low, self.least, scale]
         )  # fmt: skip
+
+
+RULES = Rules()
+
+LLOYD = Rules(least=1.0)
+"""Lloyd's step, weighted by the field."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
