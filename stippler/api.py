@@ -139,14 +139,15 @@ def draw(
     show: Callable[[str, int, int], None] | None = None,
 ) -> Drawing:
     """Carry out a plan."""
-    reference = Reference(_darkness(image, tone), width_mm)
+    told: list[str] = []
+    reference = Reference(_darkness(image, tone, told), width_mm)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
             show(last.stage, last.done, last.total)
     assert last is not None, "stages() yields at least its end"
     drawing = Drawing.from_reference(reference, last.position_mm, last.radius_mm, plan)
-    drawing.notes = notes_on(last)
+    drawing.notes = (*told, *notes_on(last))
     if isinstance(image, str | PathLike):
         drawing.inputs = (Path(image),)
     return drawing
@@ -229,14 +230,14 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
     return polygon_of(area, "area")
 
 
-def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
+def _darkness(image: Any, tone: str, notes: list[str] | None = None) -> NDArray[np.float32]:
     from PIL import Image
 
     from stippler.files.read import picture
 
     picture.check_tone(tone)
     if isinstance(image, str | PathLike):
-        return picture.read_darkness(Path(image), tone)
+        return picture.read_darkness(Path(image), tone, notes)
     if isinstance(image, Image.Image):
         return picture.darkness_of_image(image, tone)
     if image is None:

@@ -258,8 +258,8 @@ class Cells:
         todo = np.empty(self.n, np.uint8)
         stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
         done = parallel_for(
-            verify_stars, self.n, self._dots, self._table, self._field, self.over, new, stars,
-            self.rules, todo, grain=GRAIN, cancel=cancel,
+            verify_stars, self.n, self._dots, self._table, self.grid.border, self._field,
+            self.over, new, stars, self.rules, todo, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
         self.n_failed = len(which)

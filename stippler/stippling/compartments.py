@@ -43,6 +43,7 @@ class Compartments:
     next_edge, compartment_of_edge : (e,) int32
     first_edge : (c + 1,) int32
         Where the edges of each compartment begin.
+    is_convex : (c,) bool
     """
 
     polygons: list[Polygon]
@@ -54,6 +55,7 @@ class Compartments:
     next_edge: NDArray[np.int32]
     compartment_of_edge: NDArray[np.int32]
     first_edge: NDArray[np.int32]
+    is_convex: NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.polygons)
@@ -93,6 +95,7 @@ class Compartments:
             next_edge=border.next_edge,
             compartment_of_edge=border.compartment,
             first_edge=first,
+            is_convex=_are_convex(border, len(polygons)),
         )
 
     def find(
@@ -220,3 +223,16 @@ def _rectangles(border: BorderEdges, first: NDArray[np.int32]) -> NDArray[np.int
     along = (edge[:, :, :2] == edge[:, :, 2:]).any(axis=2).all(axis=1)
     found: NDArray[np.intp] = four[along]
     return found
+
+
+def _are_convex(border: BorderEdges, n: int) -> NDArray[np.bool_]:
+    """Tell which of n compartments have one ring that turns left all the way, once around."""
+    along = border.edge[:, 2:] - border.edge[:, :2]
+    onward = along[border.next_edge]
+    cross = along[:, 0] * onward[:, 1] - along[:, 1] * onward[:, 0]
+    turn = np.arctan2(cross, (along * onward).sum(axis=1))
+    turns = np.bincount(border.compartment, turn, minlength=n)
+    n_left = np.bincount(border.compartment, cross > 0.0, minlength=n)
+    n_edges = np.bincount(border.compartment, minlength=n)
+    convex: NDArray[np.bool_] = (n_left == n_edges) & (turns < 3.0 * np.pi)
+    return convex

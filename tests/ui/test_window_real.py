@@ -330,6 +330,7 @@ def test_bursts_from_the_canvas_to_a_panel_and_back(
     desk.xdotool("mousemove", *map(round, places["Start"]), "click", 1)
     until(lambda: dots() == 0, "the new dots")
     desk.focus()
-    desk.xdotool("key", "ctrl+q")
-    _, errors = desk.process.communicate(timeout=_PATIENCE_S)
-    assert (desk.process.returncode, errors) == (0, "")
+    desk.xdotool("key", "ctrl+q")  # asks, for there are strokes
+    until(desk.is_dimmed, "the question")
+    desk.xdotool("key", "Escape")
+    until(lambda: not desk.is_dimmed(), "the drawing")

@@ -154,49 +154,17 @@ def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float,
 
 
 @inline
-def free_share(out: F8, n: int, du: float, dv: float, margin: float, is_walls: bool) -> float:
-    """Return the share of the move (du, dv) that stays clear of the n segments, or of its walls.
+def free_share(out: F8, n: int, du: float, dv: float) -> float:
+    """Return the share of the move (du, dv) that stays within a convex outline of n sides.
 
-    1 if the straight way ends well inside; else half of the way to the first of them met; 0 if
-    even that comes nearer to it than `margin`.
+    1 if the way ends inside; else half of the way to the first side met.
     """
     share = 1.0
     for s in range(n):
-        if is_walls and out[s, 4] >= 0.0:
-            continue
         au, av = out[s, 0], out[s, 1]
         eu, ev = out[s, 2] - au, out[s, 3] - av
-        length = math.sqrt(eu * eu + ev * ev)
-        if length == 0.0:
-            continue
-        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
-        after = before + (eu * dv - ev * du) / length
-        if after >= margin or after >= before:
-            continue
-        t = max((before - margin) / (before - after), 0.0)
-        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
-        if -margin <= along <= length + margin:
-            share = min(share, 0.5 * t)
-    return share
-
-
-@inner
-def share_before_walls(edge: F8, near: I4, n_near: int, spot: Spot, du: float, dv: float) -> float:
-    """Return the share of the move (du, dv) that crosses none of the edges listed to the outside.
-
-    1 if it crosses none; else half of the way to the first.
-    """
-    share = 1.0
-    for s in range(n_near):
-        e = near[s]
-        au, av = edge[e, 0] - spot.x, edge[e, 1] - spot.y
-        eu, ev = edge[e, 2] - edge[e, 0], edge[e, 3] - edge[e, 1]
         before = ev * au - eu * av  # left is positive
         after = before + eu * dv - ev * du
-        if before < 0.0 or after >= 0.0:
-            continue
-        t = before / (before - after)
-        along = eu * (t * du - au) + ev * (t * dv - av)
-        if 0.0 <= along <= eu * eu + ev * ev:
-            share = min(share, 0.5 * t)
+        if after < 0.0 and after < before:
+            share = min(share, 0.5 * max(before / (before - after), 0.0))
     return share

@@ -17,7 +17,7 @@ from stippler.camera import Camera, Size
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.preview import Preview
 from stippler.editor.session import Session
-from stippler.editor.tools.toolbox import Chosen
+from stippler.editor.tools.selection import Selection
 from stippler.ui.canvas.lens import MARGIN, Glass
 from stippler.ui.canvas.patch import Patch
 from stippler.ui.look import Look
@@ -97,7 +97,7 @@ class Canvas:
     def draw(
         self,
         session: Session,
-        selection: Chosen,
+        selection: Selection,
         camera: Camera,
         look: Look,
         preview: Preview | None,
@@ -125,7 +125,7 @@ class Canvas:
     def _draw_page(
         self,
         session: Session,
-        selection: Chosen,
+        selection: Selection,
         camera: Camera,
         look: Look,
         preview: Preview | None,
@@ -194,7 +194,9 @@ class Canvas:
             self._made = Renderer(self._ctx)
         return self._made
 
-    def _upload(self, renderer: Renderer, session: Session, selection: Chosen, page: Page) -> None:
+    def _upload(
+        self, renderer: Renderer, session: Session, selection: Selection, page: Page
+    ) -> None:
         """Bring what has changed since the last call to the GPU."""
         content = _content(session, selection)
         if content == self._uploaded:
@@ -209,7 +211,7 @@ class Canvas:
             renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
         self._uploaded, self._edited = content, document
 
-    def _upload_edited(self, renderer: Renderer, document: Document, selection: Chosen) -> None:
+    def _upload_edited(self, renderer: Renderer, document: Document, selection: Selection) -> None:
         cursor = self._cursor if document is self._edited else 0
         changed, selected = document.changes.since(cursor), selection.mask(document)
         dots, rows = document.dots, changed.rows
@@ -250,7 +252,7 @@ class Canvas:
             self._made.release()
 
 
-def _content(session: Session, selection: Chosen) -> tuple[int, int, int]:
+def _content(session: Session, selection: Selection) -> tuple[int, int, int]:
     """Return what tells one state of the dots from another."""
     edited = session.document.revision if session.document is not None else -1
     return session.revision, edited, selection.revision
