@@ -58,6 +58,13 @@ Sizes = Annotated[
         metavar="tone|regions", help="Dot sizes solved for the tone, or the paper's by region."
     ),
 ]
+Spacing = Annotated[
+    str,
+    typer.Option(
+        metavar="METHOD",
+        help="even (no rows), or lloyd, delaunay-mean, springs, as in the paper.",
+    ),
+]
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
@@ -117,6 +124,7 @@ def edit(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -130,6 +138,7 @@ def edit(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
@@ -161,6 +170,7 @@ def render(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -178,6 +188,7 @@ def render(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
@@ -214,6 +225,7 @@ def stats(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
 ) -> None:
     """Print the number of dots, their spacing, spectrum and tone error.
@@ -243,6 +255,7 @@ def stats(
             growth=growth,
             start=start,
             sizes=sizes,
+            spacing=spacing,
             weighted=not unweighted,
         )
         report, notes = statistics.of_picture(file, plan, tone=tone, width_mm=width)

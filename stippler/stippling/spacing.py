@@ -39,7 +39,7 @@ class Rules:
     """
 
     near: float = 0.87
-    base: float = -0.01
+    base: float = 0.05
     slope: float = 1.0
     cap: float = 0.97
     hole: float = 1.15
