@@ -18,7 +18,7 @@ from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
-from stippler.stippling.spacing import Rules, Wanted
+from stippler.stippling.spacing import Rules, Wanted, rules_after
 from stippler.stippling.tessellation import Tessellation
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
@@ -130,6 +130,8 @@ class Relaxation:
         self._part_coinciding(xy, found)
         self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
+        self._rules: Rules | None = None
+        self._n_done = 0
         if method == "even":
             if wanted is None:
                 values = None if density is None else density.values
@@ -148,8 +150,8 @@ class Relaxation:
         return self._cells.n
 
     def set_rules(self, rules: Rules) -> None:
-        """Change how strictly the next steps of "even" space dots."""
-        self._cells.set_rules(rules)
+        """Change how strictly the next steps of "even" space dots; they loosen no more by then."""
+        self._rules = rules
 
     @property
     def n_failed(self) -> int:
@@ -224,9 +226,12 @@ class Relaxation:
     def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
         if self._method not in ("lloyd", "even"):
             return self._step_by_neighbours()
+        if self._method == "even":
+            self._cells.set_rules(self._rules or rules_after(self._n_done))
         gone = self._cells.step(cancel)
         if gone is None:
             return None
+        self._n_done += 1
         n_free = len(self) - int(np.count_nonzero(self._fixed))
         if not n_free:
             return StepReport(0.0, 0.0, 0)

@@ -11,7 +11,7 @@ from stippler.drawing.style import Style
 from stippler.stippling.density import DensityField
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.relax import Relaxation
-from stippler.stippling.spacing import LLOYD, RULES, Rules, Wanted
+from stippler.stippling.spacing import LLOYD, Rules, Wanted, rules_after
 
 _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
@@ -89,7 +89,8 @@ def _schedule(n_steps: int, sizes_follow: bool) -> list[Rules]:
     """
     n_first = min(_FIRST_STEPS, n_steps // 3)
     n_last = int(sizes_follow and n_steps > 2)
-    return [LLOYD] * n_first + [RULES] * (n_steps - n_first - n_last) + [_TO_INK] * n_last
+    middle = [rules_after(k) for k in range(n_steps - n_first - n_last)]
+    return [LLOYD] * n_first + middle + [_TO_INK] * n_last
 
 
 def _with_order_broken(

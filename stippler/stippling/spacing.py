@@ -5,7 +5,7 @@ See `stippler.kernels.cells.spacing` for the rules, `docs/quality.md` for what t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,11 +38,11 @@ class Rules:
         Share of every move that goes to the ink's centroid.
     """
 
-    near: float = 0.87
+    near: float = 0.86
     base: float = 0.05
     slope: float = 1.0
     cap: float = 0.97
-    hole: float = 1.15
+    hole: float = 1.17
     narrow: float = 0.6
     level: float = 0.3
     pull: float = 0.5
@@ -60,8 +60,23 @@ class Rules:
 
 RULES = Rules()
 
+_LOOSE = Rules(near=0.84, cap=0.84, hole=1.22, narrow=0.0)
+_TIGHT_STEPS, _LOOSENING_STEPS = 40, 60
+
 LLOYD = Rules(least=1.0)
 """Lloyd's step, weighted by the field."""
+
+
+def rules_after(n_steps: int) -> Rules:
+    """Return the rules of the step after `n_steps`: strict at first, then ever looser.
+
+    What strict rules want cannot be had everywhere. What has been reached meets looser ones with
+    room to spare, so that dots come to rest.
+    """
+    t = min(max((n_steps - _TIGHT_STEPS) / _LOOSENING_STEPS, 0.0), 1.0)
+    if t == 0.0:
+        return RULES
+    return Rules(*(a + t * (b - a) for a, b in zip(astuple(RULES), astuple(_LOOSE), strict=True)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
