@@ -40,11 +40,11 @@ class Drawing(_Drawing):
     notes: tuple[str, ...] = ()
     inputs: tuple[Path, ...] = ()
 
-    def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
+    def save(self, path: str | PathLike[str], *, dpi: float = 300.0, form: str = "") -> None:
         """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi, inputs=self.inputs)
+        save(self, Path(path), dpi=dpi, inputs=self.inputs, form=form)
 
     def _repr_svg_(self) -> str:
         from stippler.files.svg import svg_chunks
@@ -175,7 +175,7 @@ def pulse_density(
     image : path, Pillow image or array
         As for `stipple`.
     dots : int
-        How many; met within 1 %.
+        How many.
     tone, growth, start, seed
         As for `stipple`.
     area : shapely Polygon or MultiPolygon, or (m, 2) array, px, optional

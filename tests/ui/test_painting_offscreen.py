@@ -88,7 +88,7 @@ def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None
     document = opened(desk, picture)
     desk.host.key("b")
     desk.host.settle()
-    renderer = desk.app.editor.canvas._renderer()
+    renderer = desk.app.editor.canvas._renderer().scene
     uploads: list[int] = []
     update = renderer.update_dots
     monkeypatch.setattr(

@@ -109,13 +109,13 @@ def test_the_page_may_be_turned_mirrored_and_zoomed(opened) -> None:
 def test_hovering_uploads_nothing_and_rests_with_the_pointer(opened, monkeypatch) -> None:
     take_brush(opened, *TOOLES["enlarge"])
     canvas = opened.app.editor.canvas
-    renderer = canvas._renderer()
+    scene = canvas._renderer().scene
     for name in ("set_dots", "update_dots", "set_positions"):
-        monkeypatch.setattr(renderer, name, lambda *_, **__: pytest.fail("dots were uploaded"))
+        monkeypatch.setattr(scene, name, lambda *_, **__: pytest.fail("dots were uploaded"))
     hover(opened, AT)
     n_drawn = canvas.patch.n_drawn
     assert n_drawn > 0
-    opened.app.editor.show_panel("Brush")
+    opened.app.editor.show_panel("Tool")
     opened.host.settle()
     assert canvas.patch.n_drawn == n_drawn
     hover(opened, (62.0, 45.0))

@@ -84,7 +84,7 @@ def test_what_a_held_slider_shows_is_made_when_it_is_let_go(shaping, label, shar
 
 
 def test_nothing_is_uploaded_while_a_slider_is_held(shaping, monkeypatch) -> None:
-    renderer = shaping.app.editor.canvas._renderer()
+    renderer = shaping.app.editor.canvas._renderer().scene
     for name in ("set_dots", "update_dots", "set_positions"):
         monkeypatch.setattr(renderer, name, lambda *_, **__: pytest.fail("dots were uploaded"))
     n_drawn = shaping.app.editor.canvas.n_drawn

@@ -21,6 +21,7 @@ from stippler.kernels.cells.border import (
     outline_of_lanes,
     outline_within,
     put_numbers,
+    reach2_of_outline,
     sum_area,
     sum_field,
 )
@@ -87,7 +88,7 @@ def relax_dots(
         Results.
     cells
         Result, by row, unless empty: mass, centroid relative to the dot, area, second moment of
-        area.
+        area, square of the farthest corner's distance.
     outlines
         Results, unless empty.
     spacing
@@ -274,7 +275,7 @@ def _centroid_of(
         if len(field.sums) == 0 or len(cells):
             mass, du, dv, second = sum_area(pads.out, n)
             if len(cells):
-                cells[i, 3], cells[i, 4] = mass, second
+                cells[i, 3], cells[i, 4], cells[i, 5] = mass, second, reach2_of_outline(pads.out, n)
         if len(field.sums):
             mass, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
     if mass > 0.0:
