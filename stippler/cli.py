@@ -87,10 +87,28 @@ def _version(shown: bool) -> None:
         raise typer.Exit
 
 
+def _install_desktop(wanted: bool) -> None:
+    if wanted:
+        from stippler.desktop import install
+
+        for path in install():
+            typer.echo(f"{shown(path)} is written")
+        raise typer.Exit
+
+
 @app.callback()
 def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+    install_desktop: Annotated[
+        bool,
+        typer.Option(
+            "--install-desktop",
+            callback=_install_desktop,
+            is_eager=True,
+            help="Put the program into the menus of a Linux desktop.",
+        ),
     ] = False,
 ) -> None:
     pass
@@ -370,7 +388,7 @@ def run(args: list[str]) -> int:
     skip_blas()
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, about files; what matters is told by us
-    if not args or args[0] not in (*COMMANDS, "--help", "--version"):
+    if not args or args[0] not in (*COMMANDS, "--help", "--version", "--install-desktop"):
         args = ["edit", *args]  # `stippler photo.jpg`
     try:
         return int(app(args, prog_name="stippler", standalone_mode=False) or 0)
