@@ -145,7 +145,7 @@ def draw(
 ) -> Drawing:
     """Carry out a plan."""
     told: list[str] = []
-    reference = Reference(_darkness(image, tone, told), width_mm)
+    reference = _reference(image, tone, width_mm, told)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
@@ -254,6 +254,15 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
     from stippler.stippling.compartments import polygon_of
 
     return polygon_of(area, "area")
+
+
+def _reference(image: Any, tone: str, width_mm: float, notes: list[str]) -> Reference:
+    """Return what tone is taken from; of a file it keeps the file."""
+    if isinstance(image, str | PathLike):
+        from stippler.files.read.picture import read_picture
+
+        return read_picture(Path(image), tone=tone, width_mm=width_mm, notes=notes)
+    return Reference(_darkness(image, tone, notes), width_mm)
 
 
 def _darkness(image: Any, tone: str, notes: list[str] | None = None) -> NDArray[np.float32]:
