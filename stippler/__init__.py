@@ -11,11 +11,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from stippler.version import VERSION
+
 if TYPE_CHECKING:
     from stippler.api import Drawing, fill, open, pulse_density, relax, stipple
     from stippler.errors import StipplerError
 
-__version__ = "0.1.0"
+__version__ = VERSION
 __all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
 
 

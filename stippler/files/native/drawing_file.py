@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from stippler import __version__
 from stippler.atomic_write import replacing
 from stippler.drawing import records
 from stippler.drawing.dots import FREE, MAX_ELONGATION, NO_CURVE, ON_CURVE, Dots
@@ -27,9 +26,10 @@ from stippler.files.native import arrays, structure
 from stippler.files.native.container import Members, read_container, write_container
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
 from stippler.files.native.thumbnail import MEMBER, thumbnail_png
+from stippler.version import VERSION
 
 ENDING = ".stipple"
-PROGRAM = f"stippler {__version__}"
+PROGRAM = f"stippler {VERSION}"
 STRUCTURE = "document.json"
 
 ReadPicture = Callable[[bytes, str, str], Picture]
