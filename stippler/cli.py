@@ -61,6 +61,13 @@ Sizes = Annotated[
         metavar="tone|regions", help="Dot sizes solved for the tone, or the paper's by region."
     ),
 ]
+Spacing = Annotated[
+    str,
+    typer.Option(
+        metavar="METHOD",
+        help="even (no rows), or lloyd, delaunay-mean, springs, as in the paper.",
+    ),
+]
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
@@ -138,6 +145,7 @@ def edit(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -151,6 +159,7 @@ def edit(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
@@ -187,6 +196,7 @@ def render(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -204,6 +214,7 @@ def render(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
@@ -244,6 +255,7 @@ def stats(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
 ) -> None:
     """Print the number of dots, their spacing, spectrum and tone error.
@@ -275,6 +287,7 @@ def stats(
                 growth=growth,
                 start=start,
                 sizes=sizes,
+                spacing=spacing,
                 weighted=not unweighted,
             )
             from stippler import stats as statistics
