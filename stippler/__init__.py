@@ -9,7 +9,7 @@ Nothing is imported before it is used, so that the command line starts at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+TYPE_CHECKING = False  # what typing has; importing it takes long enough to be interrupted in
 
 from stippler.version import VERSION
 
@@ -21,7 +21,7 @@ __version__ = VERSION
 __all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     if name == "StipplerError":
         from stippler import errors
 
