@@ -11,17 +11,19 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # what typing has; importing it takes long enough to be interrupted in
 
-from stippler.version import VERSION
-
 if TYPE_CHECKING:
     from stippler.api import Drawing, fill, open, pulse_density, relax, stipple
     from stippler.errors import StipplerError
+    from stippler.version import VERSION as __version__
 
-__version__ = VERSION
 __all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
 
 
 def __getattr__(name: str) -> object:
+    if name == "__version__":
+        from stippler import version
+
+        return version.VERSION
     if name == "StipplerError":
         from stippler import errors
 
