@@ -14,7 +14,6 @@ TYPE_CHECKING = False  # what typing has; importing it takes long enough to be i
 if TYPE_CHECKING:
     from stippler.api import Drawing, fill, open, pulse_density, relax, stipple
     from stippler.errors import StipplerError
-    from stippler.version import VERSION as __version__
 
 __all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
 

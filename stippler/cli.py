@@ -81,9 +81,9 @@ PenOption = Annotated[
 
 def _version(shown: bool) -> None:
     if shown:
-        from stippler import __version__
+        from stippler.version import VERSION
 
-        typer.echo(f"stippler {__version__}")
+        typer.echo(f"stippler {VERSION}")
         raise typer.Exit
 
 
