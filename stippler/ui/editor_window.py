@@ -312,8 +312,6 @@ class Editor:
 
     def _previewed(self) -> Preview | None:
         """Return the change that is held in a panel, or that the brush or the plan will make."""
-        if self.session.pen:
-            return Preview(pen_named(self.session.pen).change)
         hovers = isinstance(self.pointer.state, Idle)
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None

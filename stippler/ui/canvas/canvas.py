@@ -200,13 +200,9 @@ class Canvas:
         if content == self._uploaded:
             return
         renderer.set_page(page.width_mm, page.height_mm)
-        document = session.document if session.position_mm is None else None
-        if document is not None:
-            self._upload_edited(renderer, document, selection)
-        elif session.position_mm is not None and session.radius_mm is not None:
-            renderer.set_positions(session.position_mm, session.radius_mm)
-        else:
-            renderer.set_positions(np.empty((0, 2)), np.empty(0, np.float32))
+        document = session.document
+        assert document is not None
+        self._upload_edited(renderer, document, selection)
         self._uploaded, self._edited = content, document
 
     def _upload_edited(self, renderer: Renderer, document: Document, selection: Chosen) -> None:
