@@ -117,7 +117,7 @@ def _pauses(n: int, seconds: float) -> list[Figure]:
     driver: list[float] = []
     with _desk(n) as desk:
         session = desk.app.session
-        desk.app.editor.painting.toolbox.choose_kind("push")
+        desk.app.editor.painting.toolbox.choose("push")
         session.relax(100_000, weighted=False)
         desk.host.until(lambda: session.done > 2, "the relaxation")
         held, began = False, time.perf_counter()
@@ -150,7 +150,7 @@ def _latency(n: int, clicks: int) -> list[Figure]:
     counts = []
     with _desk(n) as desk:
         session, toolbox = desk.app.session, desk.app.editor.painting.toolbox
-        toolbox.choose_kind("add")
+        toolbox.choose("add")
         assert toolbox.brush is not None
         toolbox.set_brush(replace(toolbox.brush.with_value("dot_mm", _BIG_DOT_MM), radius_mm=0.5))
         session.relax(100_000, weighted=False)
@@ -187,7 +187,7 @@ def _many(n: int) -> list[Figure]:
     with _desk(n, opened=lambda times: note("first frame", times)) as desk:
         note("a frame of panning", _drag(desk, glfw.MOUSE_BUTTON_MIDDLE))
         for kind in ("push", "size", "relax", "spray", "thin", "erase"):
-            desk.app.editor.painting.toolbox.choose_kind(kind)
+            desk.app.editor.painting.toolbox.choose(kind)
             note(f"a frame of a stroke with {kind}", _drag(desk, glfw.MOUSE_BUTTON_LEFT))
     return out
 

@@ -27,6 +27,7 @@ from stippler.drawing.shape_change import ShapeChange, to
 from stippler.files.svg import svg_chunks
 from stippler.headless import is_software, open_context, open_gpu_context
 from stippler.kernels.shapes.dot_shape import bezier_outlines
+from stippler.render.frame import Frame
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -79,14 +80,14 @@ class _Stage:
     def __init__(self, ctx: moderngl.Context, one: Drawing, size: tuple[int, int]) -> None:
         self.ctx, self.size = ctx, size
         self.renderer = Renderer(ctx)
-        self.renderer.set_page(one.page.width_mm, one.page.height_mm)
-        self.renderer.set_dots(one.dots)
+        self.renderer.scene.set_page(one.page.width_mm, one.page.height_mm)
+        self.renderer.scene.set_dots(one.dots)
         self.target = ctx.framebuffer([ctx.renderbuffer(size, 4)])
         self.camera = Camera.fit(one.page, size)
 
-    def frame(self) -> None:
+    def frame(self, preview: Preview | None = None) -> None:
         """Draw, and wait until it is drawn."""
-        self.renderer.draw(self.camera, self.size, self.target)
+        self.renderer.draw(Frame(self.camera, self.size, preview=preview), self.target)
         self.ctx.finish()
 
     def release(self) -> None:
@@ -139,24 +140,16 @@ def _previews(ctx: moderngl.Context, repeats: int) -> list[Figure]:
     size = (64, 64)
     tile = stage.camera.tile((610, 355), size, WINDOW)
 
-    def both() -> None:
-        stage.renderer.set_preview(tip)
-        stage.renderer.set_preview(None)
-
     def hover() -> None:
-        stage.renderer.set_preview(tip)
-        stage.renderer.draw(replace(tile, center_mm=next(places)), size, stage.target)
-        stage.renderer.set_preview(None)
+        camera = replace(tile, center_mm=next(places))
+        stage.renderer.draw(Frame(camera, size, preview=tip), stage.target)
         ctx.finish()
 
     places = ((100.0 + 0.01 * k, 60.0) for k in range(10_000))
-    setting = 1e3 * median_s(both, repeats)
     hovering = 1e3 * median_s(hover, 4 * repeats, warm=3)
-    stage.renderer.set_preview(whole)
-    held = 1e3 * median_s(stage.frame, repeats, warm=2)
+    held = 1e3 * median_s(lambda: stage.frame(whole), repeats, warm=2)
     stage.release()
     return [
-        Figure("setting a preview on 200,000 dots", setting, "ms"),
         Figure("what a brush of 4 mm hovers over, in 200,000 dots", hovering, "ms"),
         Figure("frame, 200,000 round dots, elongated by a held slider", held, "ms"),
     ]
@@ -176,9 +169,9 @@ def _uploads(ctx: moderngl.Context, repeats: int) -> list[Figure]:
 
         return 1e3 * median_s(whole, 4 * repeats, warm=3)
 
-    part = timed(lambda: stage.renderer.update_dots(dots, rows))
-    places = timed(lambda: stage.renderer.set_positions(dots.position_mm, dots.radius_mm))
-    everything = timed(lambda: stage.renderer.set_dots(dots))
+    part = timed(lambda: stage.renderer.scene.update_dots(dots, rows))
+    places = timed(lambda: stage.renderer.scene.set_positions(dots.position_mm, dots.radius_mm))
+    everything = timed(lambda: stage.renderer.scene.set_dots(dots))
     stage.release()
     return [
         Figure("upload of a stroke on 500 of 200,000 dots", part, "ms", 0.2),

@@ -51,12 +51,7 @@ def _lens(repeats: int) -> list[Figure]:
 
 def _open(app: Any) -> None:
     """Give the editor a drawing, as a finished job would."""
-    from stippler.drawing.document import Document
-
-    app.session.drawing = drawing(_N_DOTS)
-    app.session.document = Document(app.session.drawing)
-    app.session.revision += 1
-    app.session.phase = "done"
+    app.session.show(drawing(_N_DOTS))
 
 
 def _mover(app: Any) -> Any:
@@ -88,7 +83,8 @@ def _tone() -> Figure:
     import stippler
     from stippler.camera import Camera
     from stippler.headless import open_context
-    from stippler.render.lens import Colors, LensPass
+    from stippler.render.frame import Frame
+    from stippler.render.lens import LensPass
     from stippler.render.renderer import Renderer
     from stippler.resources import assets
 
@@ -96,12 +92,13 @@ def _tone() -> Figure:
     ctx = open_context()
     renderer, lens = Renderer(ctx), LensPass(ctx, _LENS_PX, 0, 1.0)
     try:
-        renderer.set_page(made.page.width_mm, made.page.height_mm)
-        renderer.set_dots(made.dots)
+        renderer.scene.set_page(made.page.width_mm, made.page.height_mm)
+        renderer.scene.set_dots(made.dots)
         middle = (made.page.width_mm / 2, made.page.height_mm / 2)
         camera = Camera(middle, _LENS_PX / made.page.width_mm)
         white, black = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
-        lens.draw(renderer, camera, Colors(white, white, black))
+        size_px = (_LENS_PX, _LENS_PX)
+        lens.draw(renderer, Frame(camera, size_px, white, white, black))
         seen = np.frombuffer(lens.texture.read(), np.uint8).reshape(_LENS_PX, _LENS_PX, 4)
     finally:
         lens.release()

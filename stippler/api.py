@@ -40,11 +40,11 @@ class Drawing(_Drawing):
     notes: tuple[str, ...] = ()
     inputs: tuple[Path, ...] = ()
 
-    def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
+    def save(self, path: str | PathLike[str], *, dpi: float = 300.0, form: str = "") -> None:
         """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi, inputs=self.inputs)
+        save(self, Path(path), dpi=dpi, inputs=self.inputs, form=form)
 
     def _repr_svg_(self) -> str:
         from stippler.files.svg import svg_chunks
@@ -139,14 +139,15 @@ def draw(
     show: Callable[[str, int, int], None] | None = None,
 ) -> Drawing:
     """Carry out a plan."""
-    reference = Reference(_darkness(image, tone), width_mm)
+    told: list[str] = []
+    reference = Reference(_darkness(image, tone, told), width_mm)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
             show(last.stage, last.done, last.total)
     assert last is not None, "stages() yields at least its end"
     drawing = Drawing.from_reference(reference, last.position_mm, last.radius_mm, plan)
-    drawing.notes = notes_on(last)
+    drawing.notes = (*told, *notes_on(last))
     if isinstance(image, str | PathLike):
         drawing.inputs = (Path(image),)
     return drawing
@@ -169,7 +170,7 @@ def pulse_density(
     image : path, Pillow image or array
         As for `stipple`.
     dots : int
-        How many; met within 1 %.
+        How many.
     tone, growth, start, seed
         As for `stipple`.
     area : shapely Polygon or MultiPolygon, or (m, 2) array, px, optional
@@ -229,14 +230,14 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
     return polygon_of(area, "area")
 
 
-def _darkness(image: Any, tone: str) -> NDArray[np.float32]:
+def _darkness(image: Any, tone: str, notes: list[str] | None = None) -> NDArray[np.float32]:
     from PIL import Image
 
     from stippler.files.read import picture
 
     picture.check_tone(tone)
     if isinstance(image, str | PathLike):
-        return picture.read_darkness(Path(image), tone)
+        return picture.read_darkness(Path(image), tone, notes)
     if isinstance(image, Image.Image):
         return picture.darkness_of_image(image, tone)
     if image is None:

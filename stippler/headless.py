@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +13,8 @@ from numpy.typing import NDArray
 from stippler.camera import Camera, Size
 from stippler.drawing.drawing import Drawing
 from stippler.errors import DisplayError, ParameterError
+from stippler.render.frame import Frame
+from stippler.render.ink import MARGIN_PX
 from stippler.render.paper import Color
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
@@ -19,6 +22,7 @@ from stippler.render.state import release_target
 MAX_SIDE_PX = 100_000
 _MOST_DEVICES = 16
 _STRIP_PX = 4_000_000  # pixels in one strip
+_LEAST_ROWS = 16
 
 WHITE: Color = (1.0, 1.0, 1.0)
 BLACK: Color = (0.0, 0.0, 0.0)
@@ -136,25 +140,34 @@ def _strips(
 ) -> Iterator[NDArray[np.uint8]]:
     paper, ink = colors
     page = drawing.page
-    rows = min(max(_STRIP_PX // size[0], 16), size[1])
+    rows = min(max(_STRIP_PX // size[0], _LEAST_ROWS), size[1])
+    columns = min(_most_columns(ctx), size[0])
     scale = max(size[0] / page.width_mm, size[1] / page.height_mm)  # the page covers all pixels
     whole = Camera((page.width_mm / 2, page.height_mm / 2), scale)
-    renderer = Renderer(ctx)
-    target = ctx.framebuffer([ctx.renderbuffer((size[0], rows), channels)])
-    try:
-        renderer.set_page(page.width_mm, page.height_mm)
-        renderer.set_dots(drawing.dots)
+    with contextlib.ExitStack() as made:
+        renderer = Renderer(ctx)
+        made.callback(renderer.release)
+        target = ctx.framebuffer([ctx.renderbuffer((columns, rows), channels)])
+        made.callback(release_target, ctx, target)
+        renderer.scene.set_page(page.width_mm, page.height_mm)
+        renderer.scene.set_dots(drawing.dots)
         for top in range(0, size[1], rows):
-            camera = whole.tile((0, top), (size[0], rows), size)
-            renderer.draw(
-                camera, (size[0], rows), target, paper=paper, desk=paper, ink=ink, marks=None
-            )
-            data = np.frombuffer(target.read(components=channels, alignment=1), np.uint8)
             shape = (rows, size[0], channels)[: 2 if channels == 1 else 3]
-            yield data.reshape(shape)[::-1][: size[1] - top]
-    finally:
-        release_target(ctx, target)
-        renderer.release()
+            strip = np.empty(shape, np.uint8)
+            for left in range(0, size[0], columns):
+                camera = whole.tile((left, top), (columns, rows), size)
+                frame = Frame(camera, (columns, rows), paper=paper, desk=paper, ink=ink, marks=None)
+                renderer.draw(frame, target)
+                data = np.frombuffer(target.read(components=channels, alignment=1), np.uint8)
+                tile = data.reshape(rows, columns, *shape[2:])[::-1, : size[0] - left]
+                strip[:, left : left + columns] = tile
+            yield strip[: size[1] - top]
+
+
+def _most_columns(ctx: moderngl.Context) -> int:
+    """Return how wide a picture the context draws at once, with the ink's margins."""
+    limits = [ctx.info[f"GL_MAX_{what}_SIZE"] for what in ("TEXTURE", "RENDERBUFFER")]
+    return int(min(*limits, *ctx.info["GL_MAX_VIEWPORT_DIMS"])) - 2 * MARGIN_PX
 
 
 def render_image(

@@ -14,7 +14,7 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.reference import Reference
 from stippler.errors import GeometryError
 from stippler.files.read.picture import read_picture
-from stippler.files.table import read_csv
+from stippler.files.read.table import read_csv
 from stippler.stippling.plan import Plan
 
 _SAID = {

@@ -65,6 +65,47 @@ def test_strips_are_rendered_as_they_are_asked_for(drawing, context, monkeypatch
     assert headless.render_image(drawing, px_per_mm=1.0, context=context).shape == (37, 50, 3)
 
 
+def test_a_page_wider_than_the_driver_draws_at_once_is_tiled(drawing, context, monkeypatch):
+    whole = headless.render_image(drawing, px_per_mm=7.0, context=context)
+    grey = headless.render_image(drawing, px_per_mm=7.0, grey=True, context=context)
+    monkeypatch.setattr(headless, "_most_columns", lambda _: 97)
+    tiled = headless.render_image(drawing, px_per_mm=7.0, context=context)
+    assert np.abs(tiled.astype(int) - whole).max() <= 1
+    assert np.array_equal(
+        headless.render_image(drawing, px_per_mm=7.0, grey=True, context=context).shape, grey.shape
+    )
+
+
+def test_a_picture_wider_than_16384_pixels_is_made():
+    one = Drawing.blank(Page(170, 1))
+    one.dots = Dots.round([(169.5, 0.5), (0.5, 0.5)], 0.3)
+    strip = headless.render_image(one, px_per_mm=100.0, grey=True)
+    assert strip.shape == (100, 17_000)
+    assert strip[50, [50, 16_950]].tolist() == [0, 0]
+    assert (strip[:, 200:16_800] == 255).all()
+
+
+def test_what_fails_half_way_gives_everything_back(drawing, context, monkeypatch):
+    made = []
+    for name in ("framebuffer", "buffer", "program"):
+        make = getattr(moderngl.Context, name)
+
+        def noted(self, *args, make=make, **kwargs):
+            made.append(make(self, *args, **kwargs))
+            return made[-1]
+
+        monkeypatch.setattr(moderngl.Context, name, noted)
+
+    def fail(*_):
+        raise RuntimeError("out of memory")
+
+    monkeypatch.setattr(headless.Renderer, "draw", fail)
+    with pytest.raises(RuntimeError):
+        headless.render_image(drawing, px_per_mm=7.0, context=context)
+    assert made
+    assert all(type(one.mglo).__name__ == "InvalidObject" for one in made)
+
+
 def test_without_a_context_one_is_opened(drawing):
     image = headless.render_image(drawing, px_per_mm=2.0)
     assert image.shape == (74, 100, 3)

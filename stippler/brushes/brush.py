@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Self
@@ -76,6 +75,22 @@ class Brush:
         """Return a brush with one parameter changed."""
         return replace(self, values={**self.values, name: value})
 
+    @property
+    def inverted(self) -> Self | None:
+        """What does the opposite, with the same tip; None where nothing does."""
+        about = self.about
+        if about.inverse:
+            other = kind_of(about.inverse)
+            known = {p.name for p in other.parameters}
+            values = {name: value for name, value in self.values.items() if name in known}
+            return replace(self, name=other.label, kind=other.name, values=values)
+        if about.opposite:
+            parameter, opposites = about.opposite
+            if (value := opposites.get(self.value(parameter))) is not None:
+                name = f"{self.name}, inverted"
+                return replace(self.with_value(parameter, value), name=name)
+        return None
+
     def resized(self, factor: float) -> Self:
         """Return a larger or smaller brush, within limits."""
         radius = min(max(self.radius_mm * factor, SMALLEST_MM), LARGEST_MM)
@@ -107,14 +122,7 @@ class Brush:
 
 
 def _check(parameter: Parameter, value: Value) -> None:
-    if parameter.options:
-        fine = value in parameter.options
-    elif isinstance(parameter.default, bool):
-        fine = isinstance(value, bool)
-    else:
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        fine = number and math.isfinite(float(value)) and parameter.low <= value <= parameter.high  # type: ignore[operator]
-    if not fine:
+    if not parameter.allows(value):
         raise ParameterError(f"{value!r} is out of range", parameter.label)
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-Rhythm = Literal["click", "arc", "time", "drag", "select"]
+Rhythm = Literal["click", "arc", "time", "drag"]
 Value = float | str | bool
 
 
@@ -29,6 +31,16 @@ class Parameter:
     options: tuple[str, ...] = ()
     only: tuple[str, tuple[str, ...]] | None = None
 
+    def allows(self, value: object) -> bool:
+        """Return whether it may have a value."""
+        if self.options:
+            return value in self.options
+        if isinstance(self.default, bool):
+            return isinstance(value, bool)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return False
+        return math.isfinite(value) and self.low <= value <= self.high
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:
@@ -36,10 +48,19 @@ class Kind:
 
     Attributes
     ----------
-    rhythm : {"click", "arc", "time", "drag", "select"}
-        Whether it acts once a press, by arc length, by time, on what is dragged, or selects.
+    rhythm : {"click", "arc", "time", "drag"}
+        Whether it acts once a press, by arc length, by time, or on what is dragged.
     key : str
         One letter.
+    previews : bool
+        Whether what it would do can be shown before it is done.
+    most_ticks : int
+        For one that makes `per_s` whole steps a second: as many at one call, a machine that is
+        behind drops the rest. 0 is for those that do as much a second, whatever the steps.
+    inverse : str
+        The type that does the opposite; what both have is the same.
+    opposite : (str, mapping) or None
+        A parameter, and for values of it those that do the opposite.
     """
 
     name: str
@@ -48,6 +69,15 @@ class Kind:
     rhythm: Rhythm
     tip: str
     parameters: tuple[Parameter, ...] = ()
+    previews: bool = False
+    most_ticks: int = 0
+    inverse: str = ""
+    opposite: tuple[str, Mapping[str, str]] | None = None
+
+    @property
+    def has_tip(self) -> bool:
+        """Whether it has an outline of its own and works along a stroke."""
+        return self.rhythm in ("arc", "time")
 
     def parameter(self, name: str) -> Parameter:
         """Find a parameter."""
@@ -61,7 +91,15 @@ _DOTS_PER_S = Parameter(
 )
 
 KINDS: tuple[Kind, ...] = (
-    Kind("add", "Add a dot", "a", "click", "Adds one dot where you click.", (_RADIUS,)),
+    Kind(
+        "add",
+        "Add a dot",
+        "a",
+        "click",
+        "Adds one dot where you click.",
+        (_RADIUS,),
+        inverse="remove",
+    ),
     Kind(
         "spray",
         "Spray dots",
@@ -84,8 +122,16 @@ KINDS: tuple[Kind, ...] = (
                 "by_tone", "Follow the picture", False, "Fewer dots where the picture is light."
             ),
         ),
+        inverse="thin",
     ),
-    Kind("remove", "Remove a dot", "x", "click", "Removes the dot nearest to where you click."),
+    Kind(
+        "remove",
+        "Remove a dot",
+        "x",
+        "click",
+        "Removes the dot nearest to where you click.",
+        inverse="add",
+    ),
     Kind(
         "thin",
         "Thin out",
@@ -93,10 +139,18 @@ KINDS: tuple[Kind, ...] = (
         "time",
         "Removes dots at random for as long as you hold.",
         (_DOTS_PER_S,),
+        inverse="spray",
     ),
     Kind("erase", "Erase", "e", "arc", "Removes all dots under the tip."),
-    Kind("fix", "Fix", "i", "arc", "Fixes dots: they stay where they are from now on."),
-    Kind("unfix", "Free", "u", "arc", "Frees fixed dots."),
+    Kind(
+        "fix",
+        "Fix",
+        "i",
+        "arc",
+        "Fixes dots: they stay where they are from now on.",
+        inverse="unfix",
+    ),
+    Kind("unfix", "Free", "u", "arc", "Frees fixed dots.", inverse="fix"),
     Kind(
         "relax",
         "Relax",
@@ -110,6 +164,7 @@ KINDS: tuple[Kind, ...] = (
                 "by_tone", "Follow the picture", False, "Keeps dots denser where it is darker."
             ),
         ),
+        most_ticks=6,
     ),
     Kind(
         "jitter",
@@ -157,6 +212,8 @@ KINDS: tuple[Kind, ...] = (
                 "dot_mm", "Dot radius", 0.25, "In mm.", 0.02, 2.0, "mm", only=("how", ("set",))
             ),
         ),
+        previews=True,
+        opposite=("how", {"enlarge": "reduce", "reduce": "enlarge"}),
     ),
     Kind(
         "shape",
@@ -193,6 +250,11 @@ KINDS: tuple[Kind, ...] = (
                 only=("along", ("angle",)),
             ),
         ),
+        previews=True,
+        opposite=(
+            "how",
+            {"stretch": "round", "round": "stretch", "roughen": "smooth", "smooth": "roughen"},
+        ),
     ),
     Kind("drag", "Drag a dot", "g", "drag", "Moves the dot nearest to where you press."),
     Kind("push", "Push", "k", "arc", "Takes dots along with the stroke.", (_STRENGTH,)),
@@ -205,23 +267,6 @@ KINDS: tuple[Kind, ...] = (
         (
             Parameter("strength", "Strength", 15.0, "Share of the way, a stamp.", 1, 100, "%"),
             Parameter("teeth_mm", "Teeth", 1.0, "Distance of the lines in mm.", 0.1, 20, "mm"),
-        ),
-    ),
-    Kind(
-        "select",
-        "Select",
-        "m",
-        "select",
-        "Selects dots; Shift adds, Alt takes away.",
-        (
-            Parameter(
-                "how",
-                "Outline",
-                "rectangle",
-                "Drag a rectangle or a lasso, click a polygon's corners (Enter or a double click "
-                "closes it), or click into an area.",
-                options=("rectangle", "lasso", "polygon", "area"),
-            ),
         ),
     ),
 )

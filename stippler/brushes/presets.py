@@ -10,6 +10,7 @@ from stippler.errors import ParameterError
 from stippler.settings import put_aside, read_document, settings_folder, write_document
 
 _VERSION = 1
+_FORMER = ("select",)  # kinds of earlier versions that are tools of their own now
 
 
 def presets_path() -> Path:
@@ -28,6 +29,8 @@ def load_brushes(path: Path) -> tuple[list[Brush], str]:
     brushes: list[Brush] = []
     unusable = "" if isinstance(kept, list) else "'brushes' is no list"
     for data in kept if isinstance(kept, list) else ():
+        if isinstance(data, dict) and data.get("kind") in _FORMER:
+            continue
         try:
             brushes.append(Brush.from_dict(data))
         except ParameterError as error:

@@ -15,8 +15,6 @@ from stippler.drawing.document import Document
 from stippler.drawing.edit import Edit
 
 _TICKS_PER_S = 60.0
-_MOST_TICKS = 6
-"""Relaxation steps at one call; a machine that is behind drops the rest."""
 
 
 class Stroke:
@@ -48,10 +46,11 @@ class Stroke:
         self._document, self._brush = document, brush
         self._rng = np.random.default_rng(seed)
         self._smoothing = smoothing_of(brush.smoothing, brush.smoothing_mm)
-        per_s = brush.value("per_s") if brush.about.rhythm == "time" else _TICKS_PER_S
+        about = brush.about
+        per_s = brush.value("per_s") if about.rhythm == "time" else _TICKS_PER_S
         self._count = Count(per_s)
-        step_s = 1.0 / (per_s if brush.kind == "relax" else _TICKS_PER_S)
-        self._ticker = Ticker(step_s) if brush.about.rhythm == "time" else None
+        step_s = 1.0 / (per_s if about.most_ticks else _TICKS_PER_S)
+        self._ticker = Ticker(step_s) if about.rhythm == "time" else None
         self._spacer = Spacer(brush.spacing * brush.radius_mm, heading_rad)
         self._dragged: tuple[int, float, float] | None = None
         self._pressed = False
@@ -89,8 +88,7 @@ class Stroke:
     def _guarded(self, stamps: Iterable[Stamp]) -> None:
         try:
             due = list(stamps)
-            if self._brush.kind == "relax":
-                due = due[-_MOST_TICKS:]
+            due = due[-self._brush.about.most_ticks :]  # all, where there is no limit
             for stamp in due:
                 self._apply(stamp)
         except BaseException:
@@ -111,7 +109,7 @@ class Stroke:
         return (self._ticker or self._spacer).feed(point)
 
     def _apply(self, stamp: Stamp) -> None:
-        if self._brush.kind == "drag":
+        if self._brush.about.rhythm == "drag":
             self._drag(stamp)
             return
         brush, document = self._brush, self._document

@@ -34,9 +34,8 @@ def warm_up_brushes() -> None:
     brushes = [Brush(kind.name, kind.name, 3.0) for kind in KINDS]
     brushes.append(Brush("along edges", "shape", 3.0, values={"along": "edge"}))
     for brush in brushes:
-        if brush.about.rhythm != "select":
-            stroke = Stroke(document, brush, PointerSample(5.0, 5.0), 1)
-            stroke.commit(PointerSample(6.0, 5.0, t=0.1))
+        stroke = Stroke(document, brush, PointerSample(5.0, 5.0), 1)
+        stroke.commit(PointerSample(6.0, 5.0, t=0.1))
     Tip("polygon", corners=((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))).weight(
         document.dots.position_mm, 9.0
     )

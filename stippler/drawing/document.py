@@ -19,8 +19,8 @@ from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE
 from stippler.drawing.partition import NOWHERE, Partition
 from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
-from stippler.drawing.run import Run
 from stippler.drawing.reference import Reference
+from stippler.drawing.run import Run
 from stippler.drawing.store import DotStore, Rows, union
 from stippler.drawing.style import Style
 

@@ -16,7 +16,7 @@ GROUPS = {
     "edit": "Edit",
     "selection": "Select",
     "work": "Dots",
-    "tool": "Brush",
+    "tool": "Tool",
     "view": "View",
     "panel": "Panels",
     "help": "Help",
@@ -83,6 +83,10 @@ class Command:
         Whether what it turns on and off is on.
     detail : str
         Said beside the label where there is room.
+    short : str
+        As a button says it, where what it is for is clear; the label if not given.
+    tip : str
+        What it does, where the label does not tell.
     """
 
     name: str
@@ -92,6 +96,17 @@ class Command:
     can: Callable[[], bool] | None = None
     is_on: Callable[[], bool] | None = None
     detail: str = ""
+    short: str = ""
+    tip: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.short:
+            object.__setattr__(self, "short", self.label)
+
+    @property
+    def explained(self) -> str:
+        """The label with its key, and what it does."""
+        return f"{self.hint}: {self.tip}" if self.tip else f"{self.hint}."
 
     @property
     def hint(self) -> str:

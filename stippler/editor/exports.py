@@ -10,7 +10,6 @@ from stippler.jobs import work
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
-    from stippler.drawing.drawing import Drawing
     from stippler.jobs.worker import Update, Worker
 
 

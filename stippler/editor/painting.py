@@ -75,7 +75,7 @@ class Painting:
     def _is_wanted(self, event: Event) -> bool:
         """Whether an event is one that begins to paint."""
         pressed = isinstance(event, Pressed) and event.button == LEFT
-        return pressed and self.toolbox.brush is not None
+        return pressed and self.toolbox.tool is not None
 
     def _refuse(self) -> bool:
         if self._session.busy:
@@ -245,8 +245,8 @@ class Painting:
             return False
         if len(self.toolbox.selection.ids):
             self.select_none()
-        elif self.toolbox.brush is not None:
-            self.toolbox.choose(-1)
+        elif self.toolbox.tool is not None:
+            self.toolbox.choose("")
         else:
             return False
         return True

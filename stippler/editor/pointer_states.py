@@ -1,7 +1,7 @@
 """What the pointer does on the canvas, as small states that take events and return changes.
 
 A state never touches the view or the drawing: it says what should change, and which state comes
-next. A brush is one more state that leaves `Idle` on a press and returns to it.
+next. Tools have states of their own (`editor/tools`); `editor/hands.py` says who gets an event.
 """
 
 from __future__ import annotations

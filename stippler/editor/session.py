@@ -16,6 +16,7 @@ from stippler.editor.rates import StepRate
 from stippler.errors import ParameterError, StipplerError
 from stippler.jobs import work
 from stippler.jobs.work import Source, Work
+from stippler.names import shown
 from stippler.stippling.fill import Filling as FillValues
 
 if TYPE_CHECKING:
@@ -357,7 +358,9 @@ class Session:
     def name(self) -> str:
         """File name of the picture that is open or being opened."""
         source = self._asked
-        return source.path.name if source else "Untitled" if self.document is not None else ""
+        return (
+            shown(source.path.name) if source else "Untitled" if self.document is not None else ""
+        )
 
     @property
     def outdated(self) -> bool:

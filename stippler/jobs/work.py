@@ -21,11 +21,10 @@ from stippler.errors import StipplerError
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+    from shapely.geometry import MultiPolygon, Polygon
 
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from shapely.geometry import MultiPolygon, Polygon
-
     from stippler.stippling.fill import Filling
     from stippler.stippling.plan import Plan
     from stippler.stippling.stipple import Progress

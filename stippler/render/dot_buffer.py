@@ -48,8 +48,8 @@ class DotBuffer:
         """What is uploaded, (n, 6) words."""
         return self._words[: self.n]
 
-    def set(self, dots: Dots, selected: NDArray[np.bool_], origin_mm: Origin) -> bool:
-        """Upload all dots; return whether the GL buffer is another one now.
+    def set(self, dots: Dots, selected: NDArray[np.bool_], origin_mm: Origin) -> None:
+        """Upload all dots; the GL buffer is another one where it had to grow.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class DotBuffer:
             If a shape lies outside its range.
         """
         check_shapes(dots.elongation, dots.angle_rad, dots.roughness)
-        grown = self._resize(len(dots))
+        self._resize(len(dots))
         self._order(dots.position_mm, origin_mm)
         gpu_dots.pack(dots, origin_mm, selected, self._row_of_slot, self.rows)
         self._forget()
@@ -65,7 +65,6 @@ class DotBuffer:
         self._knows_shares = False
         self._learn(dots.radius_mm, dots.elongation, dots.roughness)
         self._upload()
-        return grown
 
     def set_positions(
         self,
@@ -74,10 +73,10 @@ class DotBuffer:
         origin_mm: Origin,
         *,
         settled: bool,
-    ) -> bool:
+    ) -> None:
         """Upload positions and radii; shapes stay if there are as many dots as before."""
         same = len(position_mm) == self.n
-        grown = self._resize(len(position_mm))
+        self._resize(len(position_mm))
         if not same:
             self._order(position_mm, origin_mm)
             self.rows[:, 3:] = gpu_dots.ROUND_WORDS
@@ -88,7 +87,6 @@ class DotBuffer:
         self.max_radius_mm = float(radius_mm.max(initial=0.0))
         self._knows_shares = not settled
         self._upload()
-        return grown
 
     def update(
         self,
@@ -96,15 +94,16 @@ class DotBuffer:
         rows: NDArray[np.intp],
         selected: NDArray[np.bool_],
         origin_mm: Origin,
-    ) -> bool:
-        """Upload some rows, which include all new ones; return as `set` does."""
+    ) -> None:
+        """Upload some rows, which include all new ones."""
         n_new = len(dots) - self.n
         has_new = np.count_nonzero(np.unique(rows[rows >= self.n])) == max(n_new, 0)
         much = max(len(rows), -n_new) > len(dots) // 4
         if not has_new or len(dots) > self._room or much:
-            return self.set(dots, selected, origin_mm)
+            self.set(dots, selected, origin_mm)
+            return
         if len(rows) == 0 and n_new == 0:
-            return False
+            return
         check_shapes(dots.elongation[rows], dots.angle_rad[rows], dots.roughness[rows])
         closed = self._drop(len(dots))
         self._append(n_new)
@@ -116,7 +115,6 @@ class DotBuffer:
         self._words[slots] = fresh
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
         self._upload_runs(slots)
-        return False
 
     def find_shares(self) -> None:
         """Find how much each dot adds to the union of all; only after a full upload.
@@ -179,15 +177,14 @@ class DotBuffer:
         for a, b in zip(first, last, strict=True):
             self.gl.write(memory[a * _STRIDE : (b + 1) * _STRIDE], a * _STRIDE)
 
-    def _resize(self, n: int) -> bool:
+    def _resize(self, n: int) -> None:
         self.n = n
         if n <= self._room:
-            return False
+            return
         self._room = 1 << (n - 1).bit_length()
         self._words = gpu_dots.words(self._room)
         self.gl.release()
         self.gl = self._ctx.buffer(reserve=self._room * _STRIDE)
-        return True
 
     def _forget(self) -> None:
         self.is_round, self.is_rough, self.has_flags = True, False, False

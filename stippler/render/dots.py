@@ -16,6 +16,7 @@ from stippler.drawing.shape_change import MAX_RADIUS_MM, ShapeChange
 from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.shapes.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
+from stippler.render.frame import Frame
 from stippler.render.ink import MARGIN_PX, InkTarget
 from stippler.render.paper import Color
 from stippler.render.preview import PreviewUniforms, defines
@@ -47,7 +48,7 @@ class DotsPass:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self.buffer = DotBuffer(ctx)
+        self._bound: moderngl.Buffer | None = None  # what the vertex arrays read
         self._preview = PreviewUniforms(ctx)
         self.n_draw_calls = 0
         self._programs: dict[tuple[str, ...], Program] = {}
@@ -59,70 +60,63 @@ class DotsPass:
         span = ctx.info["GL_POINT_SIZE_RANGE"]
         self._reach_px = min(MARGIN_PX - 2.0, float(span[1]) / 2 - 1.0)
 
-    def draw(
-        self,
-        camera: Camera,
-        size_px: Size,
-        origin_mm: Origin,
-        target: InkTarget,
-        preview: Preview | None,
-    ) -> None:
-        """Gather the ink of all dots seen by a camera."""
-        whole = target.begin(size_px)
+    def draw(self, buffer: DotBuffer, frame: Frame, origin_mm: Origin, target: InkTarget) -> None:
+        """Gather the ink of all dots seen by a frame's camera."""
+        camera, preview = frame.camera, frame.preview
+        whole = target.begin(frame.size_px)
         self.n_draw_calls = 0
-        if self.buffer.n == 0:
+        if buffer.n == 0:
             return
-        if self.buffer.max_radius_mm * camera.px_per_mm < _ALONE_PX:
-            self.buffer.find_shares()
-        self._choose(camera, size_px, origin_mm, preview)
+        if buffer.gl is not self._bound:
+            self._forget_buffer()
+            self._bound = buffer.gl
+        if buffer.max_radius_mm * camera.px_per_mm < _ALONE_PX:
+            buffer.find_shares()
+        self._choose(buffer, frame, origin_mm)
         set_state(self._ctx, "add", sprites=True)
-        kind = self._kind(camera, preview)
+        kind = _kind(buffer, camera, preview)
         uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, kind, origin_mm)
         names = (kind, *defines(preview, kind))
         if kind == "ROUGH" and preview is None and self._all_small:
-            self._run_parts(camera, uniforms)
+            self._run_parts(buffer, camera, uniforms)
         else:
-            self._run_chosen(names, uniforms)
+            self._run_chosen(buffer, names, uniforms)
 
     def draw_marks(
-        self,
-        camera: Camera,
-        size_px: Size,
-        origin_mm: Origin,
-        preview: Preview | None,
-        colors: tuple[Color, Color],
+        self, buffer: DotBuffer, frame: Frame, origin_mm: Origin, colors: tuple[Color, Color]
     ) -> None:
         """Colour the fixed and the selected dots in the framebuffer in use, after `draw`."""
-        if not self.buffer.has_flags or self.buffer.n == 0:
+        if not buffer.has_flags or buffer.n == 0:
             return
+        camera, preview = frame.camera, frame.preview
         set_state(self._ctx, "over", sprites=True)
-        kind = self._kind(camera, preview)
-        uniforms = _uniforms(camera, size_px, origin_mm)
+        kind = _kind(buffer, camera, preview)
+        uniforms = _uniforms(camera, frame.size_px, origin_mm)
         uniforms |= self._preview.of(preview, kind, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
-        self._run_chosen((kind, *defines(preview, kind), "MARKS"), uniforms)
+        self._run_chosen(buffer, (kind, *defines(preview, kind), "MARKS"), uniforms)
 
-    def _run_parts(self, camera: Camera, uniforms: dict[str, Any]) -> None:
+    def _run_parts(self, buffer: DotBuffer, camera: Camera, uniforms: dict[str, Any]) -> None:
         """Draw by the shader for rough dots only those that are large enough to look rough."""
-        buffer, parts = self.buffer, self._parts
+        parts = self._parts
         parts.find(buffer, _ROUGH_FROM_PX / camera.px_per_mm)
         for kind, part in (("SMOOTH", parts.smooth), ("ROUGH", parts.rough)):
             self._run((kind, "POINTS"), buffer.gl, part.n, uniforms, part.gl)
 
-    def _run_chosen(self, names: tuple[str, ...], uniforms: dict[str, Any]) -> None:
+    def _run_chosen(
+        self, buffer: DotBuffer, names: tuple[str, ...], uniforms: dict[str, Any]
+    ) -> None:
         if self._all_small:
-            self._run((*names, "POINTS"), self.buffer.gl, self.buffer.n, uniforms)
+            self._run((*names, "POINTS"), buffer.gl, buffer.n, uniforms)
             return
         small, large = self._chosen
         self._run((*names, "POINTS"), small.gl, small.n, uniforms)
         self._run((*names, "QUADS"), large.gl, large.n, uniforms)
 
-    def _choose(
-        self, camera: Camera, size_px: Size, origin_mm: Origin, preview: Preview | None
-    ) -> None:
+    def _choose(self, buffer: DotBuffer, frame: Frame, origin_mm: Origin) -> None:
         """Decide what to draw, unless the view is the one it was decided for."""
-        buffer = self.buffer
-        pad = self._pad(preview.change if preview else None)
+        camera, size_px, preview = frame.camera, frame.size_px, frame.preview
+        pad = _pad(buffer, preview.change if preview else None)
         small_mm = self._reach_px / (camera.px_per_mm * pad)
         view = _View(camera, size_px, pad, small_mm, buffer.revision)
         if view == self._seen:
@@ -137,36 +131,9 @@ class DotsPass:
             ):
                 chosen.set(gpu_dots.choose(buffer.rows, inside, pad, limits))
 
-    def reach_mm(self, change: ShapeChange) -> float:
+    def reach_mm(self, buffer: DotBuffer, change: ShapeChange) -> float:
         """Return how far from its centre a dot may be seen when it is changed."""
-        return self._pad(change) * self.buffer.max_radius_mm if self.buffer.n else 0.0
-
-    def _pad(self, change: ShapeChange | None) -> float:
-        """Return how many of its radii a dot reaches at most."""
-        buffer = self.buffer
-        if change is None:
-            return math.sqrt(buffer.max_elongation * (1.0 + MAX_ROUGH * buffer.is_rough))
-        long = MAX_ELONGATION if change.elongates else buffer.max_elongation
-        pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or change.roughens)))
-        pad *= self._largest_mm(change) / buffer.max_radius_mm
-        return float(_PAD_STEP ** math.ceil(math.log(pad, _PAD_STEP)))
-
-    def _largest_mm(self, change: ShapeChange | None) -> float:
-        """Return what no dot's radius is above."""
-        largest = self.buffer.max_radius_mm
-        if change is None:
-            return largest
-        changed = largest * change.radius.factor + change.radius.addend
-        return max(largest, min(changed, MAX_RADIUS_MM))
-
-    def _kind(self, camera: Camera, preview: Preview | None) -> str:
-        """Return the cheapest shader that draws all dots right."""
-        buffer, change = self.buffer, preview.change if preview else None
-        is_rough = buffer.is_rough or (change is not None and change.roughens)
-        if buffer.is_round and not (is_rough or (change is not None and change.elongates)):
-            return "ROUND"
-        largest_px = self._largest_mm(change) * camera.px_per_mm
-        return "ROUGH" if is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
+        return _pad(buffer, change) * buffer.max_radius_mm if buffer.n else 0.0
 
     def _run(
         self,
@@ -201,7 +168,7 @@ class DotsPass:
             array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=n)
         self.n_draw_calls += 1
 
-    def forget_buffer(self) -> None:
+    def _forget_buffer(self) -> None:
         """Let go of everything bound to a GL buffer that is no more."""
         for array in self._arrays.values():
             array.release()
@@ -209,7 +176,7 @@ class DotsPass:
 
     def release(self) -> None:
         """Free the GL objects."""
-        self.forget_buffer()
+        self._forget_buffer()
         for program in self._programs.values():
             program.release()
         self._programs.clear()
@@ -217,7 +184,35 @@ class DotsPass:
             chosen.gl.release()
         self._parts.release()
         self._preview.release()
-        self.buffer.release()
+
+
+def _pad(buffer: DotBuffer, change: ShapeChange | None) -> float:
+    """Return how many of its radii a dot reaches at most."""
+    if change is None:
+        return math.sqrt(buffer.max_elongation * (1.0 + MAX_ROUGH * buffer.is_rough))
+    long = MAX_ELONGATION if change.elongates else buffer.max_elongation
+    pad = math.sqrt(long * (1.0 + MAX_ROUGH * (buffer.is_rough or change.roughens)))
+    pad *= _largest_mm(buffer, change) / buffer.max_radius_mm
+    return float(_PAD_STEP ** math.ceil(math.log(pad, _PAD_STEP)))
+
+
+def _largest_mm(buffer: DotBuffer, change: ShapeChange | None) -> float:
+    """Return what no dot's radius is above."""
+    largest = buffer.max_radius_mm
+    if change is None:
+        return largest
+    changed = largest * change.radius.factor + change.radius.addend
+    return max(largest, min(changed, MAX_RADIUS_MM))
+
+
+def _kind(buffer: DotBuffer, camera: Camera, preview: Preview | None) -> str:
+    """Return the cheapest shader that draws all dots right."""
+    change = preview.change if preview else None
+    is_rough = buffer.is_rough or (change is not None and change.roughens)
+    if buffer.is_round and not (is_rough or (change is not None and change.elongates)):
+        return "ROUND"
+    largest_px = _largest_mm(buffer, change) * camera.px_per_mm
+    return "ROUGH" if is_rough and largest_px > _ROUGH_FROM_PX else "SMOOTH"
 
 
 class _Chosen:

@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
 
 import moderngl
 
-from stippler.camera import Camera
+from stippler.render.frame import Frame
 from stippler.render.paper import Color
-from stippler.render.renderer import FIXED, SELECTED, Renderer
+from stippler.render.renderer import Renderer
 from stippler.render.shaders import Program
 from stippler.render.state import release_target, set_state, set_target
-
-
-class Colors(NamedTuple):
-    """Of a page; encoded for display."""
-
-    paper: Color
-    desk: Color
-    ink: Color
 
 
 class LensPass:
@@ -57,21 +49,19 @@ class LensPass:
         """Around the lens in the picture."""
         return self.size[1]
 
-    def draw(
-        self, renderer: Renderer, camera: Camera, colors: Colors, *, dots: bool = True
-    ) -> None:
-        """Draw what the renderer holds, as the camera sees it on a screen of the diameter."""
+    def draw(self, renderer: Renderer, frame: Frame) -> None:
+        """Draw a frame of a screen of the diameter; its colours are encoded, as on any other."""
         d, margin, rim_px = self.size
-        renderer.draw(
-            camera,
-            (d, d),
-            self._glass,
-            paper=_light(colors.paper),
-            desk=_light(colors.desk),
-            ink=_light(colors.ink),
-            marks=(_light(FIXED), _light(SELECTED)),
-            dots=dots,
+        marks = frame.marks and (_light(frame.marks[0]), _light(frame.marks[1]))
+        in_light = replace(
+            frame,
+            size_px=(d, d),
+            paper=_light(frame.paper),
+            desk=_light(frame.desk),
+            ink=_light(frame.ink),
+            marks=marks,
         )
+        renderer.draw(in_light, self._glass)
         set_target(self._ctx, self._target, self.texture.size)
         set_state(self._ctx, "none")
         self._ctx.clear_samplers(0, 1)

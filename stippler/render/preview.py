@@ -38,22 +38,25 @@ class PreviewUniforms:
         if kind == "ROUGH":
             values["u_roughness"] = change.roughness
         if "EDGES" in defines(preview, kind) and change.edges:
-            values |= _of_edges(change.edges, origin_mm)
-            self._bind(change.edges.reference)
+            values |= _of_edges(change.edges, origin_mm, self._bind(change.edges.reference))
         return values | (
             _of_tip(tip, origin_mm) if tip else {"u_selected_only": preview.where == "selected"}
         )
 
-    def _bind(self, reference: Reference) -> None:
+    def _bind(self, reference: Reference) -> int:
+        """Bind the darkness; return how many pixels of the reference each of its pixels is."""
+        most = int(self._ctx.info["GL_MAX_TEXTURE_SIZE"])
+        step: int = -(-max(reference.darkness.shape) // most)
         if reference is not self._held:
             self.release()
-            field = reference.darkness
+            field = np.ascontiguousarray(reference.darkness[::step, ::step], np.float32)
             self._darkness = self._ctx.texture(field.shape[::-1], 1, field, dtype="f4")
             self._darkness.filter = moderngl.NEAREST, moderngl.NEAREST
             self._held = reference
         assert self._darkness is not None
         self._ctx.clear_samplers(_UNIT, _UNIT + 1)
         self._darkness.use(_UNIT)
+        return step
 
     def release(self) -> None:
         """Free the GL objects."""
@@ -71,8 +74,8 @@ def defines(preview: Preview | None, kind: str) -> tuple[str, ...]:
     return ("PREVIEW", *tip, *edges)
 
 
-def _of_edges(edges: Edges, origin_mm: tuple[float, float]) -> dict[str, Any]:
-    pixel_mm = edges.reference.pixel_mm
+def _of_edges(edges: Edges, origin_mm: tuple[float, float], step: int) -> dict[str, Any]:
+    pixel_mm = edges.reference.pixel_mm * step
     return {
         "u_edges": (edges.reach_mm, pixel_mm, -origin_mm[0], -origin_mm[1]),
         "u_darkness": _UNIT,

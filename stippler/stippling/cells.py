@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.errors import ParameterError
 from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
@@ -15,13 +16,15 @@ from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
-from stippler.stippling.compartments import Compartments
+from stippler.stippling.compartments import RECTANGLE, Compartments
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int32]
 Question = Callable[[], bool] | None
+Redirect = Callable[[Floats, Floats], Floats]
+"""Given where dots are and where a step would take them, (n, 2) mm, returns where they shall go."""
 
 CORNER_CAP = 64
 GRAIN = 4096
@@ -38,7 +41,7 @@ SLACK = 0.5
 """How far, in grid cells, dots may go before they are sorted anew."""
 
 _NO_ROWS = np.empty(0, np.int32)
-_NO_CELLS = np.empty((0, 5))
+_NO_CELLS = np.empty((0, 6))
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 NO_OUTLINES = Outlines(np.empty((0, 2)), _NO_ROWS, _NO_ROWS, _NO_ROWS, np.zeros(1, np.int64))
@@ -93,7 +96,7 @@ class Cells:
         out[self.order, 1] = self.ys[: self.n]
         return out
 
-    def step(self, cancel: Question = None) -> Floats | None:
+    def step(self, cancel: Question = None, redirect: Redirect | None = None) -> Floats | None:
         """Move every free dot once; return how far each row went, or None if cancelled."""
         new = self._new_moves()
         done = self.keeps_stars and self._step_from_stars(new, cancel)
@@ -103,16 +106,38 @@ class Cells:
             self._has_stars = done
         if not done:
             return None
+        if redirect is not None:
+            self._redirect(new, redirect)
         self.xs, self.ys = new.x, new.y
         if self.n:
             self._slack += float(new.gone.max())
             self._keep = float(new.gone.mean()) < KEEP_BELOW * self.spacing
         return new.gone
 
+    def _redirect(self, new: Moves, redirect: Redirect) -> None:
+        """Let others choose where free dots go; one sent out of its compartment stays."""
+        n, order = self.n, self.order
+        wanted = np.empty((n, 2))
+        wanted[order] = np.column_stack([new.x[:n], new.y[:n]])
+        chosen = np.array(redirect(self.xy, wanted.copy()), np.float64)
+        if chosen.shape != (n, 2) or not np.isfinite(chosen).all():
+            raise ParameterError(f"gave shape {chosen.shape} or what is not finite", "redirect")
+        rows = np.flatnonzero((chosen != wanted).any(axis=1)[order] & ~self.fixed)
+        at = chosen[order[rows]]
+        gone = np.hypot(at[:, 0] - self.xs[rows], at[:, 1] - self.ys[rows])
+        free = new.free[rows] + new.gone[rows]
+        owner = self.compartment_of_dot[rows]
+        near = np.flatnonzero(~(gone < free) | (self.parts.kind[owner] == RECTANGLE))
+        out = near[~self.parts.contain(at[near], owner[near])]
+        at[out] = np.column_stack([self.xs[rows[out]], self.ys[rows[out]]])
+        gone[out] = 0.0
+        new.x[rows], new.y[rows] = at.T
+        new.gone[rows], new.free[rows] = gone, free - gone
+
     def measure(self, weighted: bool) -> Floats:
         """Return mass, centroid from the dot, area, second moment of cells, in the order given."""
         self._sort(self._has_stars)
-        cells = np.zeros((self.n, 5))
+        cells = np.zeros((self.n, 6))
         rows = np.arange(self.n, dtype=np.int32)
         self._relax(rows, False, self._new_moves(), cells, weighted, _NO_STARS)
         out = np.empty_like(cells)
@@ -125,7 +150,7 @@ class Cells:
         The dots beyond sides have the numbers they were given in.
         """
         self._sort(self._has_stars)
-        cells, row_of_dot = np.zeros((self.n, 5)), np.empty(self.n, np.int32)
+        cells, row_of_dot = np.zeros((self.n, 6)), np.empty(self.n, np.int32)
         row_of_dot[self.order] = np.arange(self.n, dtype=np.int32)
         found: dict[int, Outlines] = {}
         n_sides = np.zeros(self.n, np.int32)
@@ -224,7 +249,8 @@ class Cells:
         todo = np.empty(self.n, np.uint8)
         stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
         done = parallel_for(
-            verify_stars, self.n, self._dots, self._table, self._field, self.over, new, stars,
+            verify_stars, self.n, self._dots, self._table, self.grid.border, self._field,
+            self.over, new, stars,
             todo, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)

@@ -71,7 +71,8 @@ def _frames(
     first = np.concatenate([[0], np.cumsum(nx * ny)])
     real = np.column_stack([parts.box[:, :2], side, 1.0 / side, _boxes(parts)])
     kind, first_edge = parts.kind != RECTANGLE, parts.first_edge[:-1]
-    whole = np.column_stack([nx, ny, first[:-1], kind, first_edge]).astype(np.int32)
+    columns = nx, ny, first[:-1], kind, first_edge, parts.is_convex
+    whole = np.column_stack(columns).astype(np.int32)
     return np.ascontiguousarray(real), np.ascontiguousarray(whole), int(first[-1])
 
 

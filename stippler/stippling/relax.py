@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.cells import Cells
+from stippler.stippling.cells import Cells, Redirect
+from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
 from stippler.stippling.tessellation import Tessellation
@@ -116,7 +115,7 @@ class Relaxation:
         if compartment_of_dot is not None:
             shape_of_dot = _checked(compartment_of_dot, n, np.int32, "compartment_of_dot", 0)
         found = self._parts.find(xy, shape_of_dot)
-        self._part_coinciding(xy, found)
+        part_coinciding(xy, found, self._parts, self._fixed)
         self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
 
@@ -135,15 +134,24 @@ class Relaxation:
         """How many cells the last step could not carry over from the one before."""
         return self._cells.n_failed
 
-    def step(self, cancel: Cancel = None) -> StepReport:
+    def step(self, cancel: Cancel = None, redirect: Redirect | None = None) -> StepReport:
         """Move every free dot once.
+
+        Parameters
+        ----------
+        cancel : callable or threading.Event, optional
+        redirect : callable, optional
+            Called with where dots are and where the step would take them, (n, 2) mm each, in the
+            order given, once all centroids are known; returns where they shall go instead. Fixed
+            dots stay; so does one that would be sent out of its compartment. By Lloyd's method
+            only.
 
         Returns
         -------
         StepReport
             Zeros if `cancel` came before the end; then nothing has moved.
         """
-        report = self._step(_as_question(cancel))
+        report = self._step(_as_question(cancel), redirect)
         return report or StepReport(0.0, 0.0, 0)
 
     def run(
@@ -152,6 +160,7 @@ class Relaxation:
         tolerance_mm: float = 0.0,
         cancel: Cancel = None,
         progress: Callable[[int, StepReport], None] | None = None,
+        redirect: Redirect | None = None,
     ) -> RunReport:
         """Take steps until enough, until dots move less than a tolerance, or until cancelled.
 
@@ -164,11 +173,13 @@ class Relaxation:
             Asked many times a step; the step under way is dropped.
         progress : callable, optional
             Called after each step with the number of steps done and the step's report.
+        redirect : callable, optional
+            As for `step`.
         """
         asked = _as_question(cancel)
         steps: list[StepReport] = []
         for i in range(iterations):
-            report = self._step(asked)
+            report = self._step(asked, redirect)
             if report is None:
                 return RunReport("cancelled", tuple(steps))
             steps.append(report)
@@ -198,10 +209,12 @@ class Relaxation:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""
         return float(self._cells.measure(weighted=False)[:, 4].sum())
 
-    def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
+    def _step(
+        self, cancel: Callable[[], bool] | None, redirect: Redirect | None = None
+    ) -> StepReport | None:
         if self._method != "lloyd":
             return self._step_by_neighbours()
-        gone = self._cells.step(cancel)
+        gone = self._cells.step(cancel, redirect)
         if gone is None:
             return None
         n_free = len(self) - int(np.count_nonzero(self._fixed))
@@ -226,41 +239,6 @@ class Relaxation:
             float(gone.max(initial=0.0)),
             int(np.count_nonzero(gone)),
         )
-
-    def _part_coinciding(
-        self, xy: NDArray[np.float64], compartment_of_dot: NDArray[np.int32]
-    ) -> None:
-        """Move dots off dots that were given before them at the same place, by very little."""
-        x = np.sort(xy[:, 0])
-        if (x[1:] > x[:-1]).all():
-            return
-        order = np.lexsort((xy[:, 1], xy[:, 0], compartment_of_dot))  # stable: as given in groups
-        same = (xy[order[1:]] == xy[order[:-1]]).all(axis=1)
-        same &= compartment_of_dot[order[1:]] == compartment_of_dot[order[:-1]]
-        group = np.concatenate([[0], np.cumsum(~same)])
-        sizes = np.bincount(group)
-        ends = np.cumsum(sizes)
-        for g in np.flatnonzero(sizes > 1):
-            rows = order[ends[g] - sizes[g] : ends[g]]
-            c = compartment_of_dot[rows[0]]
-            area = self._parts.area[c]
-            spacing = math.sqrt(area / np.count_nonzero(compartment_of_dot == c))
-            free = rows[~self._fixed[rows]]
-            for k, i in enumerate(free if len(free) < len(rows) else free[1:], start=1):
-                xy[i] = self._place_beside(xy[i], int(c), k, 1e-3 * spacing)
-
-    def _place_beside(
-        self, at: NDArray[np.float64], c: int, k: int, distance: float
-    ) -> NDArray[np.float64]:
-        polygon = self._parts.polygons[c]
-        shapely.prepare(polygon)
-        for attempt in range(64):
-            angle = 2.399963229728653 * (k + attempt)
-            radius = distance * math.sqrt(k) / (1 + attempt // 8) ** 2
-            there = at + radius * np.array([math.cos(angle), math.sin(angle)])
-            if shapely.contains_xy(polygon, there[0], there[1]):
-                return there
-        return at
 
 
 def relax(

@@ -6,11 +6,10 @@ import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import KINDS
 from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Commands, Key
 from stippler.editor.session import Session
 from stippler.stippling.plan import Plan
-from stippler.ui.panels.layout import BRUSH
+from stippler.ui.panels.layout import TOOL
 from stippler.ui.preferences import SCALES, TONES
 from stippler.ui.window.window import Window
 from stippler.units import DEFAULT_WIDTH_MM
@@ -80,19 +79,25 @@ def _selection(editor: Editor) -> Iterator[Command]:
     yield Command("selection.all", "Select all", painting.select_all, (Key("a", CTRL),))
     yield Command("selection.none", "Select nothing", painting.select_none,
                   (Key("a", CTRL_SHIFT),), can=has_some)  # fmt: skip
-    yield Command("selection.delete", "Delete the selection", painting.delete,
-                  (Key("delete"), Key("backspace")), can=has_some)  # fmt: skip
-    yield Command("selection.duplicate", "Duplicate the selection", painting.duplicate,
-                  (Key("d", CTRL),), can=has_some)  # fmt: skip
-    for name, label, run in (
-        ("fix", "Fix the selection", lambda: painting.fix(True)),
-        ("free", "Free the selection", lambda: painting.fix(False)),
-        ("relax", "Relax the selection", painting.relax),
-        ("jitter", "Jitter the selection", painting.jitter),
-        ("enlarge", "Enlarge the selection's dots", lambda: painting.resize(_RESIZE_PERCENT)),
-        ("reduce", "Reduce the selection's dots", lambda: painting.resize(-_RESIZE_PERCENT)),
-    ):
-        yield Command(f"selection.{name}", label, run, can=has_some)
+    for name, label, short, tip, run, keys in (
+        ("delete", "Delete the selection", "Delete", "", painting.delete,
+         (Key("delete"), Key("backspace"))),
+        ("duplicate", "Duplicate the selection", "Duplicate", "the copies are selected then.",
+         painting.duplicate, (Key("d", CTRL),)),
+        ("fix", "Fix the selection", "Fix dots", "they stay where they are from now on.",
+         lambda: painting.fix(True), ()),
+        ("free", "Free the selection", "Free dots", "they may move again.",
+         lambda: painting.fix(False), ()),
+        ("relax", "Relax the selection", "Relax dots", "one step of relaxation.",
+         painting.relax, ()),
+        ("jitter", "Jitter the selection", "Jitter dots",
+         "by up to a fifth of their mean distance.", painting.jitter, ()),
+        ("enlarge", "Enlarge the selection's dots", "Larger", "by 10 percent.",
+         lambda: painting.resize(_RESIZE_PERCENT), ()),
+        ("reduce", "Reduce the selection's dots", "Smaller", "by 10 percent.",
+         lambda: painting.resize(-_RESIZE_PERCENT), ()),
+    ):  # fmt: skip
+        yield Command(f"selection.{name}", label, run, keys, can=has_some, short=short, tip=tip)
 
 
 def _work(editor: Editor, session: Session) -> Iterator[Command]:
@@ -125,19 +130,29 @@ def _tools(editor: Editor) -> Iterator[Command]:
 
     def chooser(name: str) -> Callable[[], None]:
         def choose() -> None:
-            toolbox.choose_kind(name)
-            editor.show_panel(BRUSH)
+            toolbox.choose(name)
+            editor.show_panel(TOOL)
 
         return choose
 
     def used(name: str) -> Callable[[], bool]:
-        return lambda: toolbox.brush is not None and toolbox.brush.kind == name
+        return lambda: toolbox.name == name
 
-    yield Command("tool.none", "No brush", lambda: toolbox.choose(-1), (Key("v"),),
-                  is_on=lambda: toolbox.brush is None)  # fmt: skip
-    for kind in KINDS:
-        yield Command(f"tool.{kind.name}", kind.label, chooser(kind.name), (Key(kind.key),),
-                      is_on=used(kind.name))  # fmt: skip
+    yield Command("tool.none", "No tool", lambda: toolbox.choose(""), (Key("v"),),
+                  is_on=lambda: toolbox.tool is None)  # fmt: skip
+    for tool in toolbox.tools:
+        keys = (Key(tool.key),) if tool.key else ()
+        yield Command(f"tool.{tool.name}", tool.label, chooser(tool.name), keys,
+                      is_on=used(tool.name))  # fmt: skip
+    shelf = toolbox.shelf
+
+    def restore() -> None:
+        if kind := shelf.restore():
+            toolbox.choose(kind if toolbox.name != kind else "")
+            toolbox.choose(kind)
+
+    yield Command("tool.restore", "Restore deleted brush", restore,
+                  can=lambda: shelf.can_restore)  # fmt: skip
     for name, label, factor, key in (
         ("larger", "Larger tip", 1.15, Key("]")),
         ("smaller", "Smaller tip", 1 / 1.15, Key("[")),

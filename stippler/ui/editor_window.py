@@ -7,24 +7,19 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
-from stippler.editor.batches import PointerOwner, parts_of
+from stippler.editor.batches import parts_of
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
     Event,
     KeyDown,
-    Moved,
-    Pressed,
-    Released,
     Scrolled,
 )
+from stippler.editor.hands import Hands
 from stippler.editor.keymap import load_keys
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
-from stippler.editor.pointer import Pointer
-from stippler.editor.pointer_states import Idle
 from stippler.editor.rates import FrameRate
 from stippler.editor.schedule import Schedule
 from stippler.editor.session import Session
@@ -36,11 +31,10 @@ from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.canvas.pen_samples import PenSamples
-from stippler.ui.panels.brush import draw_brush
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import BRUSH, DRAWING, HISTORY, SHAPE, VIEW, Layout
+from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.menu import draw_menu
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
@@ -49,7 +43,8 @@ from stippler.ui.panels.progress import draw_work
 from stippler.ui.panels.reference import draw_reference
 from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.status import Sight, draw_status
-from stippler.ui.panels.tools import draw_tools
+from stippler.ui.panels.strip import draw_tools
+from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
@@ -91,20 +86,20 @@ class Editor:
         self.look = kept.look
         self.look.begin()
         self.view = View(BLANK, window.size_px)
-        self.pointer = Pointer(self.view)
-        self._owner = PointerOwner()
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.hands = Hands(self.view, self.painting)
+        self.pointer = self.hands.pointer
         self.popups = Popups(window, session, kept, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
             {
                 DRAWING: self._draw_drawing,
-                BRUSH: lambda: draw_brush(self.widgets, self.painting, self.commands),
+                TOOL: self._draw_tool,
                 SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
                 VIEW: self._draw_view,
                 HISTORY: self._draw_history,
@@ -141,7 +136,7 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
-        if self._poll():
+        if self.session.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -153,18 +148,6 @@ class Editor:
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
-        return True
-
-    def _poll(self) -> bool:
-        """Take the workers' results; one that cannot be taken ends the job, not the editor."""
-        try:
-            return self.session.poll()
-        except Exception as error:  # noqa: BLE001 - the drawing as it is lives on
-            self._report(error, "taking a result")
-        try:
-            self.session.stop()
-        except Exception as error:  # noqa: BLE001 - told; the job is let go of
-            self._report(error, "ending the work")
         return True
 
     def _take_unseen(self, events: list[Event]) -> None:
@@ -259,6 +242,10 @@ class Editor:
         imgui.end_child()
         draw_work(self.widgets, self.session, self.commands)
 
+    def _draw_tool(self) -> None:
+        n_selected = self.painting.n_selected
+        draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected)
+
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
         if self.session.reference is not None:
@@ -290,19 +277,19 @@ class Editor:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)
 
     def _draw_overlay(self, area: Rect) -> None:
-        draw_overlay(self.painting.toolbox, self.view, area, self._ratio, self.pointer.at_mm)
+        overlay = self.painting.toolbox.overlay(self.pointer.at_mm)
+        draw_overlay(overlay, self.view, area, self.gui.scale, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
-        at_px, brush = self.pointer.at_px, self.painting.toolbox.brush
+        at_px, tip = self.pointer.at_px, self.painting.toolbox.overlay(self.pointer.at_mm).tip
         if self.look.lens == "none" or at_px is None or self.session.drawing is None:
             return
-        beside = brush is not None and brush.about.rhythm != "select"
-        reach_px = brush.radius_mm * self.view.camera.px_per_mm if brush and beside else None
+        reach_px = tip.brush.radius_mm * self.view.camera.px_per_mm if tip else None
         diameter_px = self.look.lens_diameter * self.gui.scale * self._ratio
         glass = place_lens(self.view, at_px, self.look.lens_factor, diameter_px, reach_px)
         self.canvas.show_lens(area, glass, self.gui.scale, self._ratio)
-        if brush is not None and beside:
-            draw_tip_in_lens(brush, glass, self.pointer.at_mm, area, self._ratio)
+        if tip is not None:
+            draw_tip_in_lens(tip, glass, area, self._ratio)
 
     def _draw_status(self) -> None:
         camera = self.view.camera
@@ -312,7 +299,7 @@ class Editor:
 
     def _previewed(self) -> Preview | None:
         """Return the change that is held in a panel, or that the brush or the plan will make."""
-        hovers = isinstance(self.pointer.state, Idle)
+        hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None
         )
@@ -335,7 +322,7 @@ class Editor:
     def _take(self, event: Event, *, for_panels: bool) -> None:
         """Bring one event to whom it concerns."""
         self.lens_key.take(event)
-        elsewhere = self._owner.is_panel(event, over_panel=self.gui.wants_pointer)
+        elsewhere = not self.hands.owns(event, over_panel=self.gui.wants_pointer)
         match event:
             case Scrolled() if self.lens_key.is_held:
                 self.lens_key.strengthen(event.dy)
@@ -347,24 +334,10 @@ class Editor:
                 imgui.internal.clear_active_id()
             case KeyDown() if self.popups.take(event) or for_panels:
                 pass
-            case KeyDown() if self.painting.is_busy or self.painting.leave(event):
-                self._paint(event)
-            case KeyDown() if self.commands.take(event):
-                pass
-            case _ if self._paint(event, elsewhere=elsewhere):
+            case KeyDown() if self.hands.take_key(event) or self.commands.take(event):
                 pass
             case _:
-                self.pointer.take(event, elsewhere=elsewhere)
-
-    def _paint(self, event: Event, *, elsewhere: bool = False) -> bool:
-        """Offer an event to the brush; `elsewhere` is whether a panel has the pointer."""
-        if isinstance(event, Moved | Pressed | Released | Scrolled):
-            free = isinstance(self.pointer.state, Idle) and not elsewhere
-            follows = self.painting.is_busy and isinstance(event, Moved)  # an open polygon does
-            if not (free or follows):
-                return False
-            event = self.pointer.local(event)
-        return self.painting.take(event, self.view.at, self.view.camera.px_per_mm)
+                self.hands.take(event, elsewhere=elsewhere)
 
     # --- what is kept -------------------------------------------------------------------------
 

@@ -180,6 +180,13 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
 }
 
 
-def draw_icon(kind: str, pen: Pen) -> None:
-    """Draw the icon of a type of brush; "" is that of none."""
-    _ICONS[kind](pen)
+def draw_icon(name: str, label: str, pen: Pen) -> None:
+    """Draw the icon of a tool by its name, or its letter where it has none; "" is no tool."""
+    icon = _ICONS.get(name)
+    if icon is not None:
+        icon(pen)
+        return
+    letter = label[:1]
+    size = imgui.calc_text_size(letter)
+    at = (pen.x + (pen.side - size.x) / 2, pen.y + (pen.side - size.y) / 2)
+    pen.draw.add_text(at, pen.colour, letter)

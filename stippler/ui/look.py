@@ -21,6 +21,8 @@ class Look:
         Of text and controls, 1 is at 96 dpi; 0 is what the display tells.
     opacity : float
         Of the reference, 0..1; it is not drawn where `reference_shown` is False.
+    marks_shown : bool
+        Whether fixed and selected dots have colours of their own.
     lens : {"none", "reduce", "magnify"}
     reduction, magnification : int
         How many times smaller or larger than on the page the lens shows things.
@@ -31,6 +33,7 @@ class Look:
     theme: Theme = LIGHT
     scale: float = 0.0
     dots_shown: bool = True
+    marks_shown: bool = True
     reference_shown: bool = False
     opacity: float = 0.35
     lens: str = "none"
@@ -40,7 +43,7 @@ class Look:
 
     def begin(self) -> None:
         """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
-        self.dots_shown = True
+        self.dots_shown = self.marks_shown = True
         self.lens = self.lens if self.lens in LENSES else "none"
         for name in ("reduction", "magnification"):
             kept = getattr(self, name)

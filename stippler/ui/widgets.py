@@ -135,7 +135,8 @@ class Widgets:
             imgui.Key.keypad_enter
         )
         is_topmost = context.open_popup_stack.size() == context.begin_popup_stack.size()
-        return pressed and is_topmost and not context.nav_cursor_visible and not context.active_id
+        held = context.active_id or context.active_id_previous_frame  # a field has taken it
+        return pressed and is_topmost and not context.nav_cursor_visible and not held
 
     # --- controls ---------------------------------------------------------------------------
 

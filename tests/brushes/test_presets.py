@@ -15,7 +15,7 @@ from stippler.errors import ParameterError, StipplerError
 
 
 def test_every_kind_has_an_effect_or_a_tool_and_its_own_key():
-    assert {kind.name for kind in KINDS} - set(EFFECTS) == {"drag", "select"}
+    assert {kind.name for kind in KINDS} - set(EFFECTS) == {"drag"}
     assert len({kind.key for kind in KINDS}) == len(KINDS)
 
 

@@ -39,8 +39,8 @@ def at(x_mm, y_mm):
     left, top = editor.pointer._origin_px
     return float(x + left), float(y + top)
 
-def variants(kind):
-    for parameter in kind.parameters:
+def variants(tool):
+    for parameter in tool.parameters:
         for option in parameter.options or (True, False) * isinstance(parameter.default, bool):
             yield parameter.name, option
 
@@ -48,12 +48,12 @@ host.drop(Path(sys.argv[1]))
 host.until(lambda: session.phase == "done", "the drawing")
 at_work.append("first frames")
 host.settle()
-for kind in KINDS:
-    painting.toolbox.choose_kind(kind.name)
-    for name, option in [*variants(kind), (None, None)]:
-        at_work.append(f"{kind.name} {name} {option}")
+for tool in painting.toolbox.tools:
+    painting.toolbox.choose(tool.name)
+    for name, option in [*variants(tool), (None, None)]:
+        at_work.append(f"{tool.name} {name} {option}")
         if name:
-            painting.toolbox.set_brush(painting.toolbox.brush.with_value(name, option))
+            tool.set(name, option)
         host.drag(at(20, 20), at(30, 25), "left")
 at_work.append("selection")
 painting.select_all()

@@ -37,7 +37,7 @@ def variants():
                 yield kind.name, {p.name: option}
 
 
-BRUSHES = st.sampled_from(list(variants()))
+TOOLES = st.sampled_from(list(variants()))
 AT = st.tuples(st.floats(-1, 21), st.floats(-1, 13))
 PATHS = st.lists(AT, min_size=1, max_size=4)
 
@@ -115,7 +115,7 @@ class PaintingMachine(RuleBasedStateMachine):
         self.by_hand |= set(np.setdiff1d(after.id, before.id).tolist())
 
     @rule(
-        which=BRUSHES,
+        which=TOOLES,
         tip=st.sampled_from(TIPS),
         path=PATHS,
         radius=st.floats(0.5, 6),

@@ -59,7 +59,7 @@ def choices(kind):
 
 
 TIPS = st.builds(Tip, st.sampled_from(["circle", "ellipse", "square"]), st.floats(0, 1))
-BRUSHES = st.sampled_from(PAINTING).flatmap(
+TOOLES = st.sampled_from(PAINTING).flatmap(
     lambda name: st.builds(
         Brush,
         name=st.just(name),
@@ -91,7 +91,7 @@ def same(a, b):
 
 
 @settings(max_examples=120)
-@given(BRUSHES, PATHS, st.booleans(), st.integers(0, 5))
+@given(TOOLES, PATHS, st.booleans(), st.integers(0, 5))
 def test_whatever_a_brush_does_can_be_taken_back_and_keeps_the_rules(brush, corners, hole, seed):
     document = make_editing(hole=hole)
     start = document.dots.copy()

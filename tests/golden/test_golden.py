@@ -18,6 +18,7 @@ from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
 from stippler.drawing.pens import PENS, pen_named
+from stippler.render.frame import Frame
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -36,13 +37,13 @@ def picture():
     """Return a function that draws dots as (h, w) uint8."""
     ctx = headless.open_context()
     renderer = Renderer(ctx)
-    renderer.set_page(PAGE.width_mm, PAGE.height_mm)
+    renderer.scene.set_page(PAGE.width_mm, PAGE.height_mm)
     target = ctx.framebuffer([ctx.renderbuffer(SIZE, 1)])
 
     def drawn(dots: Dots, scale: float = 8.0, paper=WHITE, ink=BLACK) -> np.ndarray:
-        renderer.set_dots(dots)
+        renderer.scene.set_dots(dots)
         camera = Camera((8.0, 6.0), scale)
-        renderer.draw(camera, SIZE, target, paper=paper, desk=paper, ink=ink)
+        renderer.draw(Frame(camera, SIZE, paper=paper, desk=paper, ink=ink), target)
         data = np.frombuffer(target.read(components=1, alignment=1), np.uint8)
         return data.reshape(SIZE[::-1])[::-1]
 

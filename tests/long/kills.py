@@ -68,4 +68,4 @@ def kill_saves(n_kills: int, seed: int = 1) -> Counter[str]:
 
 if __name__ == "__main__":
     n = int(sys.argv[2]) if len(sys.argv) > 2 else 1000
-    print(f"{n} kills: {dict(kill_saves(n))}")  # noqa: T201
+    print(f"{n} kills: {dict(kill_saves(n))}")

@@ -17,12 +17,12 @@ def test_nothing_is_held_any_more(tmp_path):
     drawing.dots = Dots.round(np.array([[10.0, 10.0]]), 0.5)
     document = Document(drawing)
     box = Toolbox(tmp_path / "brushes.json", lambda text, grade: None)
-    box.choose_kind("select")
-    box.set_brush(box.brush.with_value("how", "polygon"))
+    box.choose("select")
+    box.tool.set("how", "polygon")
     for x in (10.0, 50.0):
         box.take(Pressed(LEFT, x, 10.0, x), document, lambda x, y: (x, y), 1.0)
-    assert len(box.outline) == 3
-    box.choose(-1)
+    assert len(box.overlay(None).paths[0].points_mm) == 3
+    box.choose("")
     assert not box.is_busy
     escape = KeyDown("escape")
     assert not box.take(escape, document, lambda x, y: (x, y), 1.0)

@@ -58,7 +58,7 @@ def test_a_broken_file_of_brushes_is_not_written_over(tmp_path):
     path = tmp_path / "brushes.json"
     path.write_text('{"brushes": [')
     box = Toolbox(path, lambda line, grade: None)
-    box.choose(0)
+    box.choose("add")
     box.resize(2.0)
     box.save()
     assert (tmp_path / "brushes.broken.json").read_text() == '{"brushes": ['

@@ -9,6 +9,7 @@ import pytest
 from stippler import headless
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
+from stippler.render.frame import Frame
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
 
@@ -91,11 +92,10 @@ def renderer(ctx: moderngl.Context) -> Iterator[Renderer]:
 def ink(renderer: Renderer, canvas: Callable) -> Callable[..., np.ndarray]:
     """Draw black on white and return the ink of each pixel, 0 to 1."""
 
-    def drawn(camera: Camera, size: tuple[int, int]) -> np.ndarray:
+    def drawn(camera: Camera, size: tuple[int, int], **shown) -> np.ndarray:
         target = canvas(size)
-        renderer.draw(
-            camera, size, target.framebuffer, paper=WHITE, desk=WHITE, ink=BLACK, marks=None
-        )
+        frame = Frame(camera, size, paper=WHITE, desk=WHITE, ink=BLACK, marks=None, **shown)
+        renderer.draw(frame, target.framebuffer)
         return 1.0 - target.pixels()[:, :, 0] / 255.0
 
     return drawn

@@ -23,13 +23,14 @@ DARKNESS = np.tile(np.arange(256, dtype=np.float32) / 255, (4, 1))  # each pixel
     ],
 )
 def test_the_screen_shows_what_the_dots_will_be_made_of(renderer, ink, adjustment):
-    renderer.set_page(256, 4)
-    renderer.set_reference(Reference(DARKNESS, 256.0), 1.0, adjustment)
-    seen = ink(Camera((128, 2), 1.0), (256, 4))
+    renderer.scene.set_page(256, 4)
+    renderer.scene.set_reference(Reference(DARKNESS, 256.0))
+    seen = ink(Camera((128, 2), 1.0), (256, 4), opacity=1.0, adjustment=adjustment)
     np.testing.assert_allclose(seen, adjustment.apply(DARKNESS), atol=1.01 / 255)
 
 
 def test_unadjusted_it_is_the_picture(renderer, ink):
-    renderer.set_page(256, 4)
-    renderer.set_reference(Reference(DARKNESS, 256.0), 1.0)
-    np.testing.assert_allclose(ink(Camera((128, 2), 1.0), (256, 4)), DARKNESS, atol=0.51 / 255)
+    renderer.scene.set_page(256, 4)
+    renderer.scene.set_reference(Reference(DARKNESS, 256.0))
+    seen = ink(Camera((128, 2), 1.0), (256, 4), opacity=1.0)
+    np.testing.assert_allclose(seen, DARKNESS, atol=0.51 / 255)

@@ -58,8 +58,8 @@ def worst_tile(a: np.ndarray, b: np.ndarray) -> float:
 @pytest.fixture
 def screen_ink(renderer, ink):
     def drawn(dots: Dots, scale: int) -> np.ndarray:
-        renderer.set_page(PAGE.width_mm, PAGE.height_mm)
-        renderer.set_dots(dots)
+        renderer.scene.set_page(PAGE.width_mm, PAGE.height_mm)
+        renderer.scene.set_dots(dots)
         return ink(Camera((20, 15), scale), (40 * scale, 30 * scale))
 
     return drawn

@@ -18,8 +18,8 @@ SIDE = 40.0
 
 def tone(renderer, ink, dots: Dots, mean_px: float) -> float:
     """Return the ink of a frame that shows the whole page, as a share of the page."""
-    renderer.set_page(SIDE, SIDE)
-    renderer.set_dots(dots)
+    renderer.scene.set_page(SIDE, SIDE)
+    renderer.scene.set_dots(dots)
     scale = mean_px / float(dots.radius_mm.mean())
     n = math.ceil(SIDE * scale) + 2
     return float(ink(Camera((SIDE / 2, SIDE / 2), scale), (n, n)).sum() / (SIDE * scale) ** 2)
@@ -102,13 +102,13 @@ def test_settled_positions_have_the_tone_of_all_dots(renderer, ink):
     points = relaxed(900)
     dots = with_areas(points, np.full(len(points), 1.1 * (SIDE - 4) ** 2 / len(points)))
     expected = tone(renderer, ink, dots, 0.4)
-    renderer.set_dots(Dots.none())
+    renderer.scene.set_dots(Dots.none())
     scale = 0.4 / float(dots.radius_mm.mean())
     n = math.ceil(SIDE * scale) + 2
     camera = Camera((SIDE / 2, SIDE / 2), scale)
-    renderer.set_positions(dots.position_mm, dots.radius_mm)
+    renderer.scene.set_positions(dots.position_mm, dots.radius_mm)
     passing = ink(camera, (n, n)).sum() / (SIDE * scale) ** 2
-    renderer.set_positions(dots.position_mm, dots.radius_mm, settled=True)
+    renderer.scene.set_positions(dots.position_mm, dots.radius_mm, settled=True)
     settled = ink(camera, (n, n)).sum() / (SIDE * scale) ** 2
     assert settled == pytest.approx(expected, rel=1e-3)
     assert passing > 1.01 * expected  # what settling is for
@@ -148,8 +148,8 @@ def test_shares_do_not_depend_on_the_number_of_threads():
 def test_a_frame_agrees_with_the_polygons_of_its_dots(renderer, ink, many):
     """Pixel by pixel against exact areas: shapely's, of the kernel's outlines."""
     dots = many(8, 6)
-    renderer.set_page(40, 30)
-    renderer.set_dots(dots)
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_dots(dots)
     size = (320, 240)
     seen = ink(Camera((20, 15), 8.0), size)
     truth = np.zeros(size[::-1])

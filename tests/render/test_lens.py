@@ -10,7 +10,8 @@ import pytest
 
 from stippler.camera import Camera
 from stippler.drawing.reference import Reference
-from stippler.render.lens import Colors, LensPass
+from stippler.render.frame import Frame
+from stippler.render.lens import LensPass
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 PAPER, DESK, INK = (0.98, 0.97, 0.9), (0.5, 0.5, 0.55), (0.05, 0.1, 0.2)
@@ -48,11 +49,11 @@ def inside() -> np.ndarray:
 @pytest.mark.parametrize("scale", [0.6, 2.0, 40.0])
 @pytest.mark.parametrize("turned", [(0.0, False), (0.6, True)])
 def test_it_shows_a_plain_drawing_at_its_scale(renderer, ink, lens, many, scale, turned):
-    renderer.set_page(40, 30)
-    renderer.set_dots(many())
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_dots(many())
     camera = Camera((19, 14), scale, *turned)
     covered = ink(camera, (D, D))[:, :, None]
-    lens.draw(renderer, camera, Colors(WHITE, WHITE, BLACK))
+    lens.draw(renderer, Frame(camera, (D, D), WHITE, WHITE, BLACK))
     expected = encoded(1.0 - covered)
     glass = seen_through(lens)[MARGIN:-MARGIN, MARGIN:-MARGIN]
     clear = inside()[MARGIN:-MARGIN, MARGIN:-MARGIN]
@@ -66,9 +67,10 @@ def test_tone_is_the_light_that_ink_and_paper_send_back(renderer, lens, shaped):
     """A screen of dots that covers a fifth looks like a grey of four fifths of the light."""
     x, y = np.meshgrid(np.arange(80) + 0.5, np.arange(80) + 0.5)
     radius = np.sqrt(0.2 / np.pi)
-    renderer.set_page(80, 80)
-    renderer.set_dots(shaped(np.stack([x.ravel(), y.ravel()], axis=1), radius))
-    lens.draw(renderer, Camera((40, 40), 0.97 * D / 80 / 8), Colors(PAPER, DESK, INK))
+    renderer.scene.set_page(80, 80)
+    renderer.scene.set_dots(shaped(np.stack([x.ravel(), y.ravel()], axis=1), radius))
+    camera = Camera((40, 40), 0.97 * D / 80 / 8)
+    lens.draw(renderer, Frame(camera, (D, D), PAPER, DESK, INK))
     side = D + 2 * MARGIN
     middle = seen_through(lens)[side // 2 - 5 : side // 2 + 5, side // 2 - 5 : side // 2 + 5, :3]
     expected = encoded(0.8 * light(PAPER) + 0.2 * light(INK))
@@ -76,17 +78,18 @@ def test_tone_is_the_light_that_ink_and_paper_send_back(renderer, lens, shaped):
 
 
 def test_the_picture_under_the_dots_is_mixed_as_light_too(renderer, lens):
-    renderer.set_page(40, 30)
-    renderer.set_reference(Reference(np.full((3, 4), 0.6, np.float32), 40.0), 0.5)
-    lens.draw(renderer, Camera((20, 15), 50.0), Colors(PAPER, DESK, INK), dots=False)
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_reference(Reference(np.full((3, 4), 0.6, np.float32), 40.0))
+    frame = Frame(Camera((20, 15), 50.0), (D, D), PAPER, DESK, INK, dots=False, opacity=0.5)
+    lens.draw(renderer, frame)
     expected = encoded(0.7 * light(PAPER) + 0.3 * light(INK))
     shown = seen_through(lens)[..., :3][inside()]
     np.testing.assert_allclose(shown, np.broadcast_to(expected, shown.shape), atol=1.5 / 255)
 
 
 def test_it_is_round_and_its_rim_shows_on_black_and_on_white(renderer, lens):
-    renderer.set_page(40, 30)
-    lens.draw(renderer, Camera((20, 15), 50.0), Colors(WHITE, WHITE, BLACK))
+    renderer.scene.set_page(40, 30)
+    lens.draw(renderer, Frame(Camera((20, 15), 50.0), (D, D), WHITE, WHITE, BLACK))
     glass, middle = seen_through(lens), MARGIN + D // 2
     assert glass[0, 0, 3] == 0.0
     row = glass[middle, MARGIN - 4 : MARGIN + 2]
@@ -98,10 +101,11 @@ def test_it_is_round_and_its_rim_shows_on_black_and_on_white(renderer, lens):
 
 
 def test_the_page_is_drawn_after_it_as_before(renderer, ink, lens, many):
-    renderer.set_page(40, 30)
-    renderer.set_dots(many())
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_dots(many())
     fit = Camera((20, 15), 8.0)
     before = ink(fit, (320, 240))
     for scale in (0.3, 90.0):
-        lens.draw(renderer, Camera((10, 10), scale, 1.0), Colors(PAPER, DESK, INK))
+        camera = Camera((10, 10), scale, 1.0)
+        lens.draw(renderer, Frame(camera, (D, D), PAPER, DESK, INK))
         assert np.array_equal(ink(fit, (320, 240)), before)

@@ -16,6 +16,7 @@ from stippler.drawing.preview import Preview
 from stippler.drawing.reference import Reference
 from stippler.drawing.shape_change import Edges, LinearChange, ShapeChange, to
 from stippler.kernels.shapes.dot_shape import outlines
+from stippler.render.frame import Frame
 
 RADIUS_PX = 100.0
 SIZE = (640, 640)
@@ -49,14 +50,14 @@ def test_the_edge_on_screen_is_the_outline(
     renderer, canvas, shaped, elongation, angle, roughness, seed
 ):
     """A hundredth of the radius inside the outline is inked, a hundredth outside is not."""
-    renderer.set_page(6.4, 6.4)
+    renderer.scene.set_page(6.4, 6.4)
     dots = shaped(
         [(3.2, 3.2)], 1.0, elongation=elongation, angle=angle, roughness=roughness, seed=seed
     )
-    renderer.set_dots(dots)
+    renderer.scene.set_dots(dots)
     target = canvas(SIZE)
     camera = Camera((3.2, 3.2), RADIUS_PX)
-    renderer.draw(camera, SIZE, target.framebuffer, paper=(1, 1, 1), ink=(0, 0, 0))
+    renderer.draw(Frame(camera, SIZE, paper=(1, 1, 1), ink=(0, 0, 0)), target.framebuffer)
     seen = 1.0 - target.pixels()[:, :, 0] / 255.0
     ring = outlines(dots, 400)[0] * RADIUS_PX
     step = normals(ring) * 0.01 * RADIUS_PX
@@ -124,17 +125,15 @@ CASES += [(change, where) for change in CHANGES for where in ("all", "soft")]
 def test_letting_go_leaves_what_the_preview_showed(renderer, ink, many, change, where):
     dots = many()
     selected = np.arange(len(dots)) % 3 == 0
-    renderer.set_page(40, 30)
-    renderer.set_dots(dots, selected)
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_dots(dots, selected)
     camera, size = Camera((20, 15), 24.0), (960, 720)
     plain = ink(camera, size)
-    renderer.set_preview(preview_of(CHANGES[change], where))
-    shown = ink(camera, size)
+    shown = ink(camera, size, preview=preview_of(CHANGES[change], where))
     new = CHANGES[change].of(dots, weights(where, dots, selected))
     made = dataclasses.replace(dots, **new)
-    renderer.set_preview(None)
     assert (ink(camera, size) == plain).all()
-    renderer.set_dots(made, selected)
+    renderer.scene.set_dots(made, selected)
     left = ink(camera, size)
     assert np.abs(left - plain).max() > 0.5
     assert np.abs(shown - left).max() < 0.05
@@ -142,25 +141,25 @@ def test_letting_go_leaves_what_the_preview_showed(renderer, ink, many, change, 
 
 
 def test_a_preview_uploads_nothing(renderer, ink, many, monkeypatch):
-    renderer.set_page(40, 30)
-    renderer.set_dots(many())
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_dots(many())
     ink(Camera((20, 15), 8.0), (320, 240))
-    revision = renderer._dots.buffer.revision
-    before = renderer._dots.buffer.gl.read()
-    renderer.set_preview(Preview(ShapeChange(radius=LinearChange(2.0))))
-    ink(Camera((20, 15), 8.0), (320, 240))
-    assert renderer._dots.buffer.revision == revision
-    assert renderer._dots.buffer.gl.read() == before
+    revision = renderer.scene.dots.revision
+    before = renderer.scene.dots.gl.read()
+    preview = Preview(ShapeChange(radius=LinearChange(2.0)))
+    ink(Camera((20, 15), 8.0), (320, 240), preview=preview)
+    assert renderer.scene.dots.revision == revision
+    assert renderer.scene.dots.gl.read() == before
 
 
 def test_an_enlarged_preview_reaches_into_the_view(renderer, ink, shaped):
     """A dot that is hidden as it is must be seen where the preview makes it reach the window."""
-    renderer.set_page(40, 30)
-    renderer.set_dots(shaped([(20.0, 15.0), (1.0, 1.0)], 0.5))
+    renderer.scene.set_page(40, 30)
+    renderer.scene.set_dots(shaped([(20.0, 15.0), (1.0, 1.0)], 0.5))
     camera = Camera((24.0, 15.0), 100.0)
     assert ink(camera, (320, 240)).sum() == 0
-    renderer.set_preview(Preview(ShapeChange(radius=to(3.0))))
-    assert ink(camera, (320, 240)).sum() > 1000
+    preview = Preview(ShapeChange(radius=to(3.0)))
+    assert ink(camera, (320, 240), preview=preview).sum() > 1000
 
 
 @pytest.mark.parametrize("pen", PENS, ids=lambda pen: pen.name)

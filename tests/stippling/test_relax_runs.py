@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
-from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
+from shapely.geometry import LineString, MultiPoint, MultiPolygon, Point, Polygon, box
 
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling import cells, relax_local
@@ -60,6 +60,43 @@ def test_kept_stars_give_what_cells_from_nothing_give(monkeypatch, polygon, weig
         gap = np.abs(engine.points - want).max()
         assert gap <= 1e-9 * engine._cells.spacing
     assert n_kept > 25, "the kept stars were not in use"
+
+
+def subdivision(n, seed):
+    """A square cut into convex polygons with corners all along their sides."""
+    seeds = np.random.default_rng(seed).random((n, 2))
+    square = box(0, 0, 1, 1)
+    cells = shapely.get_parts(shapely.voronoi_polygons(MultiPoint(seeds), extend_to=square))
+    cells = shapely.intersection(cells, square)
+    return [shapely.segmentize(g, 0.02) for g in cells if g.area > 0]
+
+
+@given(
+    seed=st.integers(0, 10**6), n=st.integers(1, 250), n_parts=st.sampled_from([1, 4, 20]),
+    over=st.sampled_from([1.0, 1.5, 0.7]), weighted=st.booleans(), hexagons=st.booleans(),
+)  # fmt: skip
+@settings(max_examples=60, deadline=None)
+def test_stars_with_edges_equal_cells_from_nothing(seed, n, n_parts, over, weighted, hexagons):
+    """Cells at borders of convex compartments, kept over whole runs."""
+    parts = subdivision(n_parts, seed)
+    if hexagons:
+        a = np.arange(17) * np.pi / 8.5
+        parts = [Polygon(0.5 + 0.4 * np.c_[np.cos(a), np.sin(a)])]
+    rng = np.random.default_rng(seed)
+    points = rng.random((n, 2))
+    points = points[shapely.intersects_xy(shapely.unary_union(parts), *points.T)]
+    density = DensityField(rng.random((9, 9)) + 0.05, 1 / 9) if weighted else None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cells, "MOST_TODO", 2.0)
+        patch.setattr(cells, "KEEP_BELOW", 10.0)
+        engine = Relaxation(points, parts, None, None, density, over)
+        owner = engine.tessellation().compartment_of_dot
+        for _ in range(25):
+            fresh = Relaxation(engine.points, parts, None, owner, density, over)
+            fresh.step()
+            engine.step()
+            gap = np.abs(engine.points - fresh.points).max(initial=0.0)
+            assert gap <= 1e-10 * engine._cells.spacing
 
 
 def test_stars_survive_dots_that_run(monkeypatch):
@@ -433,3 +470,36 @@ def test_the_brushs_grid_follows_every_change(seed):
         np.testing.assert_array_equal(brush.positions(ids), xy)
         near = ids[np.hypot(*(xy - [3.1, 1.1]).T) <= 0.6]
         np.testing.assert_array_equal(brush.find(3.1, 1.1, 0.6), near)
+
+
+@pytest.mark.parametrize("polygon", [box(0, 0, 10, 10), HOLED], ids=["square", "holed"])
+def test_others_may_redirect_moves(polygon):
+    """Dots bound to a line, dots sent out of the compartment, and what is left to relaxation."""
+    points = points_in(polygon, 600, 1)
+    fixed = np.arange(600) % 7 == 0
+    bound = np.arange(600) % 5 == 1
+    engine, given_back = Relaxation(points, polygon, fixed), []
+
+    def along_x(before, wanted):
+        np.testing.assert_array_equal(before, engine.points)
+        wanted[bound, 1] = points[bound, 1]
+        wanted[::5] += 1000.0
+        given_back.append(wanted)
+        return wanted
+
+    for _ in range(12):
+        before = engine.points
+        fresh = Relaxation(before, polygon, fixed)
+        fresh.step()
+        engine.step(redirect=along_x)
+        after = engine.points
+        np.testing.assert_array_equal(after[fixed], points[fixed])
+        np.testing.assert_array_equal(after[::5], points[::5])
+        assert shapely.intersects_xy(polygon, *after.T).all()
+        sent = bound & ~fixed
+        stayed = (after[sent] == before[sent]).all(axis=1)
+        np.testing.assert_array_equal(after[sent][~stayed], given_back[-1][sent][~stayed])
+        others = ~sent & (np.arange(600) % 5 != 0)
+        np.testing.assert_allclose(after[others], fresh.points[others], atol=1e-9)
+    with pytest.raises(ParameterError, match="redirect"):
+        engine.step(redirect=lambda _before, wanted: wanted[:3])

@@ -14,7 +14,7 @@ from PIL import Image
 
 from stippler.app import App
 from stippler.stippling.plan import Plan
-from stippler.ui.panels.layout import BRUSH, DRAWING, HISTORY, VIEW
+from stippler.ui.panels.layout import DRAWING, HISTORY, TOOL, VIEW
 from stippler.ui.preferences import FILE, Preferences
 from stippler.ui.theme import DARK, PANEL_WIDTH, STRIP_WIDTH
 from stippler.ui.widgets import Widgets
@@ -535,7 +535,7 @@ def test_every_control_of_the_panels_says_what_it_does(
     desk.app.editor.look.reference_shown = True
     monkeypatch.setattr(Widgets, "note", noting)
     monkeypatch.setattr(Widgets, "tip", telling)
-    for name in (DRAWING, VIEW, HISTORY, BRUSH):
+    for name in (DRAWING, VIEW, HISTORY, TOOL):
         desk.app.editor.show_panel(name)
         desk.host.settle()
     for key in "sjbwgkcm":

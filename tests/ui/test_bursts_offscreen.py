@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from stippler.app import App
 from stippler.drawing.drawing import Page
 from stippler.stippling.plan import Plan
-from stippler.ui.panels.layout import BRUSH
+from stippler.ui.panels.layout import TOOL
 from stippler.ui.window.scripted_host import Host
 
 CANVAS = (650.0, 330.0)
@@ -36,15 +36,15 @@ def tap(desk, at: str | tuple[float, float]) -> None:
 @pytest.mark.parametrize("order", ["panel first", "canvas first"])
 def test_a_tap_on_a_panel_and_one_on_the_canvas_in_a_batch(desk, order: str) -> None:
     blank(desk)
-    desk.app.editor.show_panel(BRUSH)
+    desk.app.editor.show_panel(TOOL)
     desk.host.settle()
     taps = ["Copy brush", CANVAS]
-    n_brushes = len(desk.app.editor.painting.toolbox.brushes)
+    n_brushes = len(desk.app.editor.painting.toolbox.shelf.brushes)
     with desk.host.batch():
         for at in taps if order == "panel first" else taps[::-1]:
             tap(desk, at)
     assert desk.app.session.n_dots == 1
-    assert len(desk.app.editor.painting.toolbox.brushes) == n_brushes + 1
+    assert len(desk.app.editor.painting.toolbox.shelf.brushes) == n_brushes + 1
 
 
 def test_many_taps_of_one_batch_all_count(desk) -> None:

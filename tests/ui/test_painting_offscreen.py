@@ -11,7 +11,7 @@ import pytest
 from stippler.brushes import effects
 from stippler.drawing.dots import Dots
 from stippler.editor.messages import ERROR
-from stippler.ui.panels.layout import BRUSH, HISTORY
+from stippler.ui.panels.layout import HISTORY, TOOL
 
 NAMES = [f.name for f in fields(Dots)]
 
@@ -88,7 +88,7 @@ def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None
     document = opened(desk, picture)
     desk.host.key("b")
     desk.host.settle()
-    renderer = desk.app.editor.canvas._renderer()
+    renderer = desk.app.editor.canvas._renderer().scene
     uploads: list[int] = []
     update = renderer.update_dots
     monkeypatch.setattr(
@@ -173,7 +173,7 @@ def test_a_selection_is_made_and_worked_on(desk, picture: Path) -> None:
     painting = desk.app.editor.painting
     chosen = painting.n_selected
     assert chosen > 0
-    desk.app.editor.show_panel(BRUSH)
+    desk.app.editor.show_panel(TOOL)
     desk.host.settle()
     for label in ("Fix dots", "Free dots", "Relax dots", "Jitter dots", "Larger", "Smaller"):
         desk.host.click(label)
@@ -195,10 +195,10 @@ def test_the_brush_panel_changes_the_brush_and_brushes_are_kept(
     desk, settings_folder: Path
 ) -> None:
     toolbox = desk.app.editor.painting.toolbox
-    for brush in list(toolbox.brushes):
-        desk.host.click(brush.about.label)
-        assert toolbox.brush.kind == brush.kind
-        assert desk.host.shown("Name")
+    for tool in toolbox.tools:
+        desk.host.click(tool.label)
+        assert toolbox.tool is tool
+        assert desk.host.shown("Name") == (toolbox.brush is not None)
     desk.host.click("Jitter")
     desk.host.click("Copy brush")
     desk.host.click("Rope")
@@ -283,15 +283,15 @@ def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
 def test_a_press_on_a_panel_is_no_corner_of_a_polygon(desk, picture):
     opened(desk, picture)
     toolbox = desk.app.editor.painting.toolbox
-    toolbox.choose_kind("select")
-    toolbox.set_brush(toolbox.brush.with_value("how", "polygon"))
+    toolbox.choose("select")
+    toolbox.tool.set("how", "polygon")
     desk.host.settle()
     desk.host.click((600, 300))
     desk.host.click((700, 300))
-    n = len(toolbox.outline)
+    n = len(toolbox.overlay(None).paths[0].points_mm)
     desk.host.click((150, 690))  # beneath the controls of the panel at the left
-    assert len(toolbox.outline) == n
-    desk.host.click("No brush")
+    assert len(toolbox.overlay(None).paths[0].points_mm) == n
+    desk.host.click("No tool")
     assert not desk.app.editor.painting.is_busy
     desk.host.key("r")  # the keyboard has not been left with the polygon
     assert desk.app.editor.look.reference_shown

@@ -13,7 +13,7 @@ from stippler.drawing.dots import Dots
 NAMES = [f.name for f in fields(Dots)]
 AT = (60.0, 45.0)  # mm, in the midst of the disc
 ASIDE = (5.0, 5.0)
-BRUSHES = {
+TOOLES = {
     "enlarge": ("size", {"how": "enlarge", "amount": 60.0}),
     "set": ("size", {"how": "set", "dot_mm": 1.9}),
     "stretch": ("shape", {"how": "stretch", "along": "angle", "angle": 90.0, "amount": 100.0}),
@@ -58,7 +58,7 @@ def hover(desk, at_mm: tuple[float, float]) -> None:
 
 def take_brush(desk, kind: str, values: dict, **changes) -> None:
     toolbox = desk.app.editor.painting.toolbox
-    toolbox.choose_kind(kind)
+    toolbox.choose(kind)
     toolbox.set_brush(replace(toolbox.brush, values=values, radius_mm=16.0, **changes))
 
 
@@ -75,14 +75,14 @@ def page_of(desk) -> np.ndarray:
     return shot[top : top + h, left : left + w]
 
 
-@pytest.mark.parametrize("name", BRUSHES)
+@pytest.mark.parametrize("name", TOOLES)
 def test_a_press_leaves_what_hovering_showed(opened, name: str) -> None:
     document = opened.app.session.document
     start = document.dots.copy()
     hover(opened, AT)
     plain = page_of(opened)
     n_drawn = opened.app.editor.canvas.n_drawn
-    take_brush(opened, *BRUSHES[name])
+    take_brush(opened, *TOOLES[name])
     hover(opened, AT)
     shown = page_of(opened)
     assert np.abs(shown - plain).max() > 150
@@ -90,7 +90,7 @@ def test_a_press_leaves_what_hovering_showed(opened, name: str) -> None:
     assert opened.app.editor.canvas.n_drawn == n_drawn  # only what lies under the tip
     opened.host.press()
     opened.host.release()
-    opened.app.editor.painting.toolbox.choose(-1)
+    opened.app.editor.painting.toolbox.choose("")
     opened.host.settle()
     left = page_of(opened)
     assert not same(document.dots, start)
@@ -107,15 +107,15 @@ def test_the_page_may_be_turned_mirrored_and_zoomed(opened) -> None:
 
 
 def test_hovering_uploads_nothing_and_rests_with_the_pointer(opened, monkeypatch) -> None:
-    take_brush(opened, *BRUSHES["enlarge"])
+    take_brush(opened, *TOOLES["enlarge"])
     canvas = opened.app.editor.canvas
-    renderer = canvas._renderer()
+    scene = canvas._renderer().scene
     for name in ("set_dots", "update_dots", "set_positions"):
-        monkeypatch.setattr(renderer, name, lambda *_, **__: pytest.fail("dots were uploaded"))
+        monkeypatch.setattr(scene, name, lambda *_, **__: pytest.fail("dots were uploaded"))
     hover(opened, AT)
     n_drawn = canvas.patch.n_drawn
     assert n_drawn > 0
-    opened.app.editor.show_panel("Brush")
+    opened.app.editor.show_panel("Tool")
     opened.host.settle()
     assert canvas.patch.n_drawn == n_drawn
     hover(opened, (62.0, 45.0))
@@ -126,10 +126,10 @@ def test_the_preview_goes_with_pointer_brush_and_stroke(opened) -> None:
     editor = opened.app.editor
     hover(opened, AT)
     plain = page_of(opened)
-    take_brush(opened, *BRUSHES["set"])
+    take_brush(opened, *TOOLES["set"])
     hover(opened, AT)
     assert (page_of(opened) != plain).any()
-    opened.host.move(*opened.host.place("No brush"))  # over the strip of tools
+    opened.host.move(*opened.host.place("No tool"))  # over the strip of tools
     opened.host.settle()
     assert (page_of(opened) == plain).all()
     hover(opened, AT)
@@ -144,6 +144,6 @@ def test_the_preview_goes_with_pointer_brush_and_stroke(opened) -> None:
     opened.host.key("escape")
     opened.host.release()
     assert editor.canvas.patch.box is not None
-    editor.painting.toolbox.choose_kind("erase")
+    editor.painting.toolbox.choose("erase")
     opened.host.settle()
     assert editor.canvas.patch.box is None

@@ -44,7 +44,7 @@ def test_closing_releases_every_gl_object(
     app.editor.look.reference_shown = True
     app.editor.look.lens = "reduce"
     toolbox = app.editor.painting.toolbox
-    toolbox.choose_kind("shape")
+    toolbox.choose("shape")
     toolbox.set_brush(replace(toolbox.brush, values={"along": "edge"}))
     host.settle()
     host.move(600, 300)

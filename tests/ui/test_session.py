@@ -117,11 +117,12 @@ def test_a_picture_is_opened_stippled_and_becomes_a_drawing(stage: Stage) -> Non
     assert session.drawing is not None
     assert (session.drawing.page.width_mm, session.drawing.page.height_mm) == (100.0, 50.0)
     assert session.reference is picture
-    before = session.revision
+    before = session.document.revision
     stage.tell(Work("relax", 3, 20, picture, dots(5)))
-    assert session.revision > before
+    assert session.document.revision > before
     assert (session.n_dots, session.stage, session.done, session.total) == (5, "relax", 3, 20)
-    assert len(session.drawing.dots) == 0  # not before the job has come to an end
+    assert len(session.drawing.dots) == 5  # a draft is in the drawing like all dots
+    assert not session.paintable
     stage.tell(Work("done", 1, 1, picture, dots(7, "done")), "finished")
     assert (session.phase, session.busy, len(session.drawing.dots)) == ("done", False, 7)
     assert session.messages.log[-1].text == "7 dots drawn"
@@ -141,13 +142,14 @@ def test_an_adjusted_picture_makes_new_dots_as_a_step_that_can_be_undone(stage: 
     adjusted = picture.adjusted(lighter)
     stage.tell(Work("done", 1, 1, adjusted, dots(7, "done")), "finished")
     assert session.document is document
-    assert session.reference is adjusted
     assert document is not None
-    assert document.drawing.reference is adjusted  # as brushes see it
+    assert document.drawing.reference is session.reference is adjusted  # as brushes see it
     assert not session.outdated
     assert session.n_dots == 7
     session.undo()
     assert session.n_dots == 5
+    assert session.reference == picture  # undoing all gives what was there at first
+    assert session.outdated
 
 
 def test_adjustments_belong_to_their_picture(stage: Stage) -> None:

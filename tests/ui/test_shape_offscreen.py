@@ -84,7 +84,7 @@ def test_what_a_held_slider_shows_is_made_when_it_is_let_go(shaping, label, shar
 
 
 def test_nothing_is_uploaded_while_a_slider_is_held(shaping, monkeypatch) -> None:
-    renderer = shaping.app.editor.canvas._renderer()
+    renderer = shaping.app.editor.canvas._renderer().scene
     for name in ("set_dots", "update_dots", "set_positions"):
         monkeypatch.setattr(renderer, name, lambda *_, **__: pytest.fail("dots were uploaded"))
     n_drawn = shaping.app.editor.canvas.n_drawn
@@ -172,9 +172,12 @@ def test_a_drawing_is_made_with_a_pen_and_seen_so_meanwhile(shaping) -> None:
     first = session.document.dots.copy()
     assert session.edit_plan(pen="stick")
     session.start()
-    shaping.host.until(lambda: session.position_mm is not None, "dots")
-    shaping.host.until(lambda: editor._preview is not None or not session.busy, "a frame")
-    assert not session.busy or editor._preview.change.roughens
+    session.pause()  # however quick the job is, it waits for us
+    shaping.host.until(lambda: session.document.in_draft and session.n_dots > 0, "dots")
+    assert session.document.dots.roughness.min() > 0.5
+    shaping.host.settle()
+    assert editor.canvas.scene.dots.is_rough
+    session.resume()
     shaping.host.until(lambda: not session.busy, "the drawing")
     dots = session.document.dots
     assert dots.roughness.min() > 0.5

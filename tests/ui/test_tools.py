@@ -75,8 +75,12 @@ class Hands:
         return self.take(KeyDown(name, t_s=self.t))
 
     def use(self, kind, **changes):
-        self.box.choose_kind(kind)
+        self.box.choose(kind)
         values = changes.pop("values", None)
+        if self.box.brush is None:
+            for name, value in (values or {}).items():
+                self.box.tool.set(name, value)
+            return
         brush = replace(self.box.brush, **changes)
         self.box.set_brush(replace(brush, values=values) if values else brush)
 
@@ -97,7 +101,7 @@ def test_without_a_brush_nothing_is_taken(hands):
     assert same(start, hands.document.dots)
 
 
-@pytest.mark.parametrize("kind", [kind.name for kind in KINDS if kind.rhythm != "select"])
+@pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
 def test_a_stroke_is_a_step_and_escape_takes_it_back(hands, kind):
     hands.use(kind, radius_mm=5.0)
     start = hands.document.dots.copy()
@@ -198,7 +202,7 @@ def test_selecting_by_rectangle_lasso_polygon_and_area(hands):
     hands.at(Pressed, (5, 5), SHIFT)  # with Shift, or a chosen dot would be carried
     for place in ((20, 5), (20, 25), (5, 25), (5, 5)):
         hands.at(Moved, place)
-    assert len(hands.box.outline) > 3
+    assert len(hands.box.overlay(None).paths[0].points_mm) > 3
     hands.at(Released, (5, 5))
     assert set(hands.box.selection.ids) == box
     hands.box.selection.choose(np.empty(0, np.int64), Mods())
@@ -251,18 +255,18 @@ def test_a_selection_is_carried_by_one_of_its_dots(hands):
 
 def test_brushes_are_copied_kept_and_deleted(hands, tmp_path):
     hands.use("jitter", radius_mm=7.5)
-    hands.box.copy_brush()
+    hands.box.shelf.copy("jitter")
     assert hands.box.brush.name == "Jitter 2"
     hands.box.set_brush(hands.box.brush.with_value("amount", 77.0))
     hands.box.save()
     again, problem = load_brushes(tmp_path / "brushes.json")
     assert not problem
     assert [b.value("amount") for b in again if b.kind == "jitter"] == [20.0, 77.0]
-    hands.box.choose_kind("jitter")
+    hands.box.choose("jitter")
     assert hands.box.brush.name == "Jitter"  # the next of its type
-    hands.box.delete_brush()
+    hands.box.shelf.delete("jitter")
     assert hands.box.brush.name == "Jitter 2"
-    hands.box.delete_brush()  # the last of a type stays
+    hands.box.shelf.delete("jitter")  # the last of a type stays
     assert hands.box.brush.name == "Jitter 2"
 
 
@@ -283,8 +287,8 @@ def test_pressure_comes_from_a_key_or_from_speed(hands):
     assert growth() == full > light > 1
     hands.use("push", pressure="speed", radius_mm=3.0)
     hands.at(Pressed, (5, 15))
-    slow = hands.box._pressure((5.1, 15), hands.t + 1.0)
-    fast = hands.box._pressure((35.0, 15), hands.t + 1.05)
+    slow = hands.box.tool.pressure((5.1, 15), hands.t + 1.0, Mods())
+    fast = hands.box.tool.pressure((35.0, 15), hands.t + 1.05, Mods())
     assert slow > 0.95
     assert fast < 0.5
     hands.key("escape")
@@ -313,10 +317,10 @@ class ToolMachine(RuleBasedStateMachine):
         assert same(hands.document.dots, self.start)
         hands.document.history.close()
 
-    @rule(k=st.integers(0, len(KINDS) - 1))
+    @rule(k=st.integers(0, len(KINDS)))
     def choose(self, k):
         if not self.hands.box.is_busy:
-            self.hands.box.choose_kind(KINDS[k].name)
+            self.hands.box.choose(self.hands.box.tools[k].name)
 
     @rule(
         kind=st.sampled_from([Pressed, Moved, Moved, Released]),

@@ -1,185 +1,168 @@
-"""The brushes at hand, the one in use, the selection, and the state of the tool."""
+"""The tools, the one at hand, what it holds, and the selection."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stippler.brushes.brush import Brush
-from stippler.brushes.presets import load_brushes, save_brushes
-from stippler.brushes.stroke_path import PointerSample
-from stippler.editor.events import LEFT, Event, KeyDown, KeyUp, Mods, Moved, Pressed, Released
-from stippler.editor.messages import WARNING
-from stippler.editor.tools.states import (
-    Cornering,
-    Desk,
-    Outlining,
-    Point,
-    Rest,
-    Stroking,
-    ToolState,
+from stippler.brushes.kinds import KINDS
+from stippler.editor.events import (
+    LEFT,
+    NO_MODS,
+    Event,
+    FocusLost,
+    KeyDown,
+    KeyUp,
+    Mods,
+    Moved,
+    Pressed,
+    Released,
 )
+from stippler.editor.messages import WARNING
+from stippler.editor.tools.brush_shelf import BrushShelf, Say
+from stippler.editor.tools.brush_tool import BrushTool
+from stippler.editor.tools.select_tool import SelectTool
+from stippler.editor.tools.selection import Selection
+from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Tool, ToolState
 from stippler.errors import StipplerError
+from stippler.settings import read_document, write_document
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
     from stippler.drawing.preview import Preview
     from stippler.drawing.reference import Reference
 
-LIGHT_PRESSURE = 0.3
-_FAST_RADII_PER_S = 30.0  # a stroke this fast has the least pressure
 _HEADING_PX = 6.0  # shorter ways are shaking
-_CALM_S = 0.08  # over which the speed is averaged
-
-Say = Callable[[str, str], None]
+_VALUES_FILE = "tools.json"
 
 
-class Chosen:
-    """The selected dots, by id.
-
-    Attributes
-    ----------
-    revision : int
-        Grows with every change.
-    """
-
-    def __init__(self) -> None:
-        self.ids: NDArray[np.int64] = np.empty(0, np.int64)
-        self.revision = 0
-
-    def choose(self, ids: NDArray[np.int64], mods: Mods) -> None:
-        """Choose dots; Shift adds them, Alt takes them away."""
-        if mods.shift:
-            ids = np.union1d(self.ids, ids)
-        elif mods.alt:
-            ids = np.setdiff1d(self.ids, ids)
-        self.ids = np.sort(ids)
-        self.revision += 1
-
-    def mask(self, document: Document) -> NDArray[np.bool_]:
-        """Return which rows are chosen."""
-        out = np.zeros(len(document.dots), np.bool_)
-        rows = document.rows(self.ids)
-        out[rows[rows >= 0]] = True
-        return out
+def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
+    """Make every tool, in the order of the strip; a new one is a line here."""
+    return (*(BrushTool(kind, shelf) for kind in KINDS), SelectTool())
 
 
 class Toolbox:
-    """Takes input for the chosen brush and brings it to the drawing that is edited.
+    """Takes input for the tool at hand and brings it to the document that is edited.
 
     Parameters
     ----------
     path : Path
-        Where the brushes are kept.
+        Where the brushes are kept; values of other tools are kept beside it.
     say : callable
         Tells the person a line, with how grave it is.
 
     Attributes
     ----------
-    brushes : list of Brush
-        Each type at least once.
-    chosen : int
-        Which of them is in use; -1 is none, and the pointer only pans.
-    selection : Chosen
+    tools : tuple of Tool
+        In the order of the strip.
+    tool : Tool or None
+        The one at hand; without one the pointer only looks around.
+    shelf : BrushShelf
+    selection : Selection
     state : ToolState
     """
 
-    def __init__(self, path: Path, say: Say, seed: int = 0) -> None:
-        self._path, self._say = path, say
-        self.brushes, problem = load_brushes(path)
-        if problem:
-            say(f"some brushes could not be loaded: {problem}", WARNING)
-        self.chosen = -1
-        self.selection = Chosen()
-        self.state: ToolState = Rest()
+    def __init__(
+        self, path: Path, say: Say, seed: int = 0, tools: Sequence[Tool] | None = None
+    ) -> None:
+        self._say, self._values_path = say, path.with_name(_VALUES_FILE)
+        self.shelf = BrushShelf(path, say)
+        self.tools = tuple(all_tools(self.shelf) if tools is None else tools)
+        self._by_name = {tool.name: tool for tool in self.tools}
+        self.tool: Tool | None = None
+        self.selection = Selection()
+        self.state: ToolState = RESTING
+        self.mods = NO_MODS
         self._n_strokes = seed
-        self._last_end: PointerSample | None = None
-        self._alt = False
-        self._speed: tuple[Point, float, float] | None = None  # where, when, mm/s
-        self._unsaved = bool(problem)  # what could be read is written anew
         self._from: Point | None = None  # where the pointer was when its heading was last looked at
         self._heading_rad = math.nan
+        self._load_values()
+        self._kept_values = self._own_values()
 
-    # --- brushes ----------------------------------------------------------------------------
+    # --- which tool -------------------------------------------------------------------------
+
+    def choose(self, name: str) -> None:
+        """Take a tool by its name, or the next brush of its type; an empty name puts it away.
+
+        With the old one goes what it holds open.
+        """
+        tool = self._by_name[name] if name else None
+        if tool is not self.tool:
+            self.state = RESTING
+        elif isinstance(tool, BrushTool):
+            self.shelf.use_next(tool.kind.name)
+        self.tool = tool
+
+    @property
+    def name(self) -> str:
+        """Of the tool at hand; empty without one."""
+        return self.tool.name if self.tool else ""
 
     @property
     def brush(self) -> Brush | None:
-        """The brush in use."""
-        return self.brushes[self.chosen] if self.chosen >= 0 else None
-
-    def choose(self, index: int) -> None:
-        """Take a brush; -1 puts it away, and with the old one goes a polygon not closed yet."""
-        if isinstance(self.state, Cornering):
-            self.state = Rest()
-        self.chosen = index
-
-    def choose_kind(self, name: str) -> None:
-        """Take the first brush of a type, or the next if one of that type is in use."""
-        same = [k for k, brush in enumerate(self.brushes) if brush.kind == name]
-        at = same.index(self.chosen) + 1 if self.chosen in same else 0
-        self.choose(same[at % len(same)])
+        """The brush in use; None where the tool at hand is none."""
+        return self.tool.brush if isinstance(self.tool, BrushTool) else None
 
     def set_brush(self, brush: Brush) -> None:
         """Change the brush in use."""
-        if self.chosen >= 0 and brush != self.brushes[self.chosen]:
-            self.brushes[self.chosen] = brush
-            self._unsaved = True
+        if isinstance(self.tool, BrushTool):
+            self.tool.brush = brush
 
     def resize(self, factor: float) -> None:
-        """Enlarge or reduce the tip of the brush in use."""
-        if self.brush is not None:
-            self.set_brush(self.brush.resized(factor))
+        """Enlarge or reduce the tip of the tool at hand."""
+        if self.tool is not None:
+            self.tool.resize(factor)
 
-    def copy_brush(self) -> None:
-        """Add a copy of the brush in use, and use that."""
-        if self.brush is None:
-            return
-        names = {brush.name for brush in self.brushes}
-        n = next(n for n in range(2, len(names) + 3) if f"{self.brush.name} {n}" not in names)
-        self.brushes.insert(self.chosen + 1, replace(self.brush, name=f"{self.brush.name} {n}"))
-        self.chosen += 1
-        self._unsaved = True
-
-    def delete_brush(self) -> None:
-        """Remove the brush in use, if its type has another."""
-        brush = self.brush
-        if brush is None or sum(b.kind == brush.kind for b in self.brushes) < 2:
-            return
-        del self.brushes[self.chosen]
-        self.choose(next(k for k, b in enumerate(self.brushes) if b.kind == brush.kind))
-        self._unsaved = True
+    # --- what is kept -----------------------------------------------------------------------
 
     def save(self) -> None:
-        """Keep the brushes, if they have changed."""
-        if self._unsaved:
-            self._unsaved = False
+        """Keep brushes and the values of other tools, if they have changed."""
+        self.shelf.save()
+        values = self._own_values()
+        if values != self._kept_values:
+            self._kept_values = values
             try:
-                save_brushes(self._path, self.brushes)
+                write_document(self._values_path, {"version": 1, "tools": values})
             except StipplerError as error:
                 self._say(str(error), WARNING)
+
+    def save_soon(self, now_s: float) -> float | None:
+        """Keep what has changed some seconds ago; return when to ask again, None is not at all."""
+        return self.shelf.save_soon(now_s)
+
+    def _own_values(self) -> dict[str, object]:
+        return {tool.name: dict(tool.values) for tool in self.tools if tool.values}
+
+    def _load_values(self) -> None:
+        document, problem = read_document(self._values_path)
+        if problem:
+            self._say(problem, WARNING)
+        kept = document.get("tools", {})
+        for name, values in kept.items() if isinstance(kept, dict) else ():
+            if name in self._by_name and isinstance(values, dict):
+                self._by_name[name].use(values)
 
     # --- input ------------------------------------------------------------------------------
 
     @property
     def is_busy(self) -> bool:
         """Whether something is held, so that it gets events over panels, too."""
-        return not isinstance(self.state, Rest)
+        return self.state is not RESTING
 
     @property
     def is_timed(self) -> bool:
-        """Whether the stroke goes on while the pointer rests."""
-        return isinstance(self.state, Stroking) and self.state.stroke.is_timed
+        """Whether what is held goes on while the pointer rests."""
+        return bool(getattr(self.state, "is_timed", False))
 
-    @property
-    def outline(self) -> list[Point]:
-        """The outline being drawn for a selection, in mm."""
-        return self.state.outline if isinstance(self.state, Outlining | Cornering) else []
+    def overlay(self, at_mm: Point | None) -> Overlay:
+        """Return what lies over the page: the tool's own, and what it holds."""
+        if self.tool is None:
+            return self.state.overlay
+        own, held = self.tool.overlay(at_mm, self.mods), self.state.overlay
+        return Overlay(own.paths + held.paths, own.handles + held.handles, held.tip or own.tip)
 
     def take(
         self,
@@ -192,67 +175,84 @@ class Toolbox:
 
         What fails takes the stroke back before it is raised.
         """
-        if isinstance(event, KeyDown | KeyUp) and event.key in ("left_alt", "right_alt"):
-            self._alt = isinstance(event, KeyDown)
-        brush = self.brush
-        if brush is None:
+        self._note_mods(event)
+        if self.tool is None:
             return False
-        desk = self._desk(document, brush, page, px_per_mm)
-        before = self.state
+        desk = self._desk(document, page, px_per_mm)
         if isinstance(event, Moved):
             self._head(page(event.x_px, event.y_px), px_per_mm)
+        before = self.state
         try:
+            if before is RESTING:
+                begun = self.tool.begin(event, desk)
+                self.state = RESTING if begun is None else begun
+                return begun is not None
             self.state = before.take(event, desk)
         except BaseException:
             before.cancel(desk)
-            self.state = Rest()
+            self.state = RESTING
             raise
-        if isinstance(self.state, Rest):
-            self._last_end = self.state.ended or self._last_end
-            self._speed = None
-        was_busy = not isinstance(before, Rest)
         match event:
             case Pressed(button=button) | Released(button=button):
-                return button == LEFT and (was_busy or self.is_busy)
+                return button == LEFT
             case KeyDown():
-                return was_busy
-        return self.brush is not brush and not isinstance(event, Moved)
+                return True
+        return False
 
     def rest(self, t_s: float) -> None:
-        """Let time go on within a stroke."""
-        if isinstance(self.state, Stroking):
+        """Let time go on."""
+        if self.is_timed:
             try:
-                self.state.rest(t_s)
+                self.state.rest(t_s)  # type: ignore[attr-defined]
             except BaseException:
-                self.state = Rest()
+                self.state = RESTING
                 raise
 
     def drop(self, document: Document | None) -> None:
         """Give up what is held, and the selection: another drawing is open now."""
-        if document is not None and self.brush is not None and self.is_busy:
-            self.state.cancel(self._desk(document, self.brush, lambda x, y: (x, y), 1.0))
-        self.state, self._last_end = Rest(), None
-        self.selection.choose(np.empty(0, np.int64), Mods())
+        if document is not None and self.is_busy:
+            self.state.cancel(self._desk(document, lambda x, y: (x, y), 1.0))
+        self.state = RESTING
+        for tool in self.tools:
+            tool.forget()
+        self.selection.forget()
+
+    def preview(self, at_mm: Point, reference: Reference | None) -> Preview | None:
+        """Return what a press would do to the dots, where that can be shown."""
+        if self.tool is None or self.is_busy:
+            return None
+        return self.tool.preview(at_mm, self.mods, self._heading_rad, reference)
 
     def _desk(
-        self,
-        document: Document,
-        brush: Brush,
-        page: Callable[[float, float], Point],
-        px_per_mm: float,
+        self, document: Document, page: Callable[[float, float], Point], px_per_mm: float
     ) -> Desk:
         return Desk(
             document,
-            brush,
             self.selection,
             page,
             px_per_mm,
-            self._pressure,
             self._next_seed,
-            self.set_brush,
-            self._last_end,
+            self._say,
+            self.mods,
             self._heading_rad,
         )
+
+    def _note_mods(self, event: Event) -> None:
+        """Note which modifier keys are held."""
+        match event:
+            case KeyDown() | KeyUp():
+                held, down = self.mods, isinstance(event, KeyDown)
+                name = event.key.removeprefix("left_").removeprefix("right_")
+                self.mods = Mods(
+                    down if name == "control" else held.ctrl,
+                    down if name == "shift" else held.shift,
+                    down if name == "alt" else held.alt,
+                )
+            case Pressed() | Released():
+                held = event.mods
+                self.mods = Mods(held.ctrl, held.shift, held.alt or self.mods.alt)
+            case FocusLost():
+                self.mods = NO_MODS
 
     def _head(self, at: Point, px_per_mm: float) -> None:
         """Note where the pointer is going."""
@@ -262,35 +262,6 @@ class Toolbox:
         if math.hypot(dx, dy) * px_per_mm >= _HEADING_PX:
             self._from, self._heading_rad = at, math.atan2(dy, dx)
 
-    def preview(self, at_mm: Point, reference: Reference | None) -> Preview | None:
-        """Return what a press would do to the dots under the tip, where that can be shown."""
-        brush = self.brush
-        if brush is None or self.is_busy or brush.kind not in ("size", "shape"):
-            return None
-        from stippler.brushes.shape import preview_of
-
-        light = brush.pressure == "key" and self._alt
-        strength = LIGHT_PRESSURE if light else 1.0
-        return preview_of(brush, at_mm, self._heading_rad, strength, reference)
-
     def _next_seed(self) -> int:
         self._n_strokes += 1
         return self._n_strokes
-
-    def _pressure(self, at: Point, t_s: float) -> float:
-        """Return what stands in for a pen's pressure: 1 is full."""
-        brush = self.brush
-        if brush is None or brush.pressure == "none":
-            return 1.0
-        if brush.pressure == "key":
-            return LIGHT_PRESSURE if self._alt else 1.0
-        speed = 0.0
-        if self._speed is not None:
-            (x, y), t, before = self._speed
-            dt = t_s - t
-            share = 1.0 - math.exp(-dt / _CALM_S) if dt > 0.0 else 0.0
-            now = math.hypot(at[0] - x, at[1] - y) / dt if dt > 0.0 else before
-            speed = before + share * (now - before)
-        self._speed = (at, t_s, speed)
-        fast = _FAST_RADII_PER_S * brush.radius_mm
-        return 1.0 - (1.0 - LIGHT_PRESSURE) * min(speed / fast, 1.0)

@@ -95,11 +95,14 @@ def _straight(colours: NDArray[Any], alpha: NDArray[Any]) -> NDArray[np.uint16]:
     return straight
 
 
-def _without_ink(ink: NDArray[Any], white: int) -> NDArray[Any]:
-    """Return the RGB of CMYK inks that are as they would be by name."""
+def _without_ink(ink: NDArray[Any], white: int) -> NDArray[np.uint16]:
+    """Return the RGB of CMYK inks that are as they would be by name, for tables of `steps_of`."""
+    if white == 255:
+        paper_8 = 255 - ink.astype(np.uint16)
+        return paper_8[..., :3] * paper_8[..., 3:]
     paper = (white - ink.astype(np.float32)) / np.float32(white)
-    rgb = paper[..., :3] * paper[..., 3:]
-    return np.rint(rgb * np.float32(white)).astype(ink.dtype)
+    rgb: NDArray[np.uint16] = np.rint(paper[..., :3] * paper[..., 3:] * DEEPEST).astype(np.uint16)
+    return rgb
 
 
 # --- floats -----------------------------------------------------------------------------------

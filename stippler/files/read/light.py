@@ -60,8 +60,10 @@ class Light:
 
 
 def steps_of(pixels: Pixels) -> int:
-    """Return the highest index of tables: floats, and what is divided first, take the finest."""
-    whole = 1 < pixels.white <= DEEPEST and pixels.alpha != "premultiplied"
+    """Return the highest index of tables: floats, and what is reckoned with first, the finest."""
+    if pixels.colour == "cmyk" and pixels.white == 255 and pixels.alpha != "premultiplied":
+        return 255 * 255  # what is left of paper between a colour's ink and black
+    whole = pixels.colour != "cmyk" and pixels.alpha != "premultiplied" and pixels.white > 1
     return pixels.white if whole else DEEPEST
 
 

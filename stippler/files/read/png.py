@@ -13,6 +13,7 @@ from stippler.files.read.pixels import Colour, Pixels, of_array
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _NEEDED = (b"IHDR", b"PLTE", b"IDAT", b"IEND")
 _MEANT = (b"tRNS", b"iCCP", b"gAMA", b"cHRM", b"sRGB", b"eXIf")
+_LENGTHS = {b"gAMA": 4, b"cHRM": 32, b"sRGB": 1}
 _COLOURS: dict[int, tuple[Colour, int]] = {
     0: ("grey", 1),
     2: ("rgb", 3),
@@ -29,6 +30,7 @@ def without_needless_chunks(data: bytes) -> bytes:
     kept = [_SIGNATURE]
     for name, whole in _chunks(data):
         sound = zlib.crc32(whole[4:-4]) == int.from_bytes(whole[-4:], "big")
+        sound = sound and len(whole) - 12 == _LENGTHS.get(name, len(whole) - 12)
         if name in _NEEDED or (name in _MEANT and sound) or name[:1].isupper():
             kept.append(whole)
     return b"".join(kept)

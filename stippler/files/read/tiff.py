@@ -159,6 +159,8 @@ def _samples(page: TiffPage) -> NDArray[Any]:
         samples = np.asarray(page.asarray(maxworkers=1))
     except Exception as error:  # whatever a codec raises
         raise NotUnpackedError(str(error)) from error
+    if int(page.bitspersample) == 24 and samples.dtype == np.uint32:
+        samples = _three_bytes(samples, page.parent.byteorder)
     height, width = int(page.imagelength), int(page.imagewidth)
     if samples.shape == (height, width):
         return samples[..., None]
@@ -167,6 +169,14 @@ def _samples(page: TiffPage) -> NDArray[Any]:
     if samples.ndim == 3 and samples.shape[1:] == (height, width):
         return np.moveaxis(samples, 0, -1)
     raise NotUnpackedError(f"samples of shape {samples.shape}")
+
+
+def _three_bytes(samples: NDArray[np.uint32], byteorder: str) -> NDArray[np.uint32]:
+    """Order the bytes of samples of 24 bits, which tifffile leaves out of order."""
+    if byteorder == ">":
+        return samples.byteswap()
+    ordered = ((samples & 0xFF) << 16) | (samples & 0xFF00) | (samples >> 16 & 0xFF)
+    return ordered.astype(np.uint32)
 
 
 def _by_palette(samples: NDArray[Any], page: TiffPage) -> NDArray[np.uint16]:
@@ -184,11 +194,13 @@ def _by_palette(samples: NDArray[Any], page: TiffPage) -> NDArray[np.uint16]:
 
 
 def _alpha(page: TiffPage, n_extra: int) -> Literal["", "straight", "premultiplied"]:
-    """Return what the first channel after the colours is; of an unknown kind, it is left alone."""
-    extra = page.extrasamples
-    if n_extra < 1 or not extra:
+    """Return what the first channel after the colours is."""
+    if n_extra < 1:
         return ""
-    kind = int(extra[0])
+    extra = page.extrasamples
+    kind = int(extra[0]) if extra else 0
+    if kind == 0:  # not said: a single one is transparency, as all other readers have it
+        return "straight" if n_extra == 1 else ""
     return "premultiplied" if kind == 1 else "straight" if kind == 2 else ""
 
 

@@ -55,6 +55,15 @@ def border_distance(edge: F8, near: I4, n_near: int, x: float, y: float) -> floa
     return math.sqrt(best) * (1.0 - 1e-9)
 
 
+@inline
+def reach2_of_outline(out: F8, n: int) -> float:
+    """Return the square of the largest distance of an outline's corner from the dot."""
+    best = 0.0
+    for s in range(n):
+        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
+    return best
+
+
 @inner
 def outline_within(
     m: int, border: Border, spot: Spot, ring: int, pads: Pads, n_near: int, stamp: int
@@ -83,12 +92,7 @@ def outline_within(
     for k in range(n2):
         cell2[6, k] = margin * math.hypot(cell2[2, k], cell2[3, k])
     n = outline_piece(n2, spot.x, spot.y, border, pads, n_near, stamp, margin)
-    best = 0.0
-    out = pads.out
-    for s in range(n):
-        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
-        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
-    return n, best
+    return n, reach2_of_outline(pads.out, n)
 
 
 @inline
@@ -154,49 +158,17 @@ def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float,
 
 
 @inline
-def free_share(out: F8, n: int, du: float, dv: float, margin: float, is_walls: bool) -> float:
-    """Return the share of the move (du, dv) that stays clear of the n segments, or of its walls.
+def free_share(out: F8, n: int, du: float, dv: float) -> float:
+    """Return the share of the move (du, dv) that stays within a convex outline of n sides.
 
-    1 if the straight way ends well inside; else half of the way to the first of them met; 0 if
-    even that comes nearer to it than `margin`.
+    1 if the way ends inside; else half of the way to the first side met.
     """
     share = 1.0
     for s in range(n):
-        if is_walls and out[s, 4] >= 0.0:
-            continue
         au, av = out[s, 0], out[s, 1]
         eu, ev = out[s, 2] - au, out[s, 3] - av
-        length = math.sqrt(eu * eu + ev * ev)
-        if length == 0.0:
-            continue
-        before = (ev * au - eu * av) / length  # distance of the dot, left is positive
-        after = before + (eu * dv - ev * du) / length
-        if after >= margin or after >= before:
-            continue
-        t = max((before - margin) / (before - after), 0.0)
-        along = (eu * (t * du - au) + ev * (t * dv - av)) / length
-        if -margin <= along <= length + margin:
-            share = min(share, 0.5 * t)
-    return share
-
-
-@inner
-def share_before_walls(edge: F8, near: I4, n_near: int, spot: Spot, du: float, dv: float) -> float:
-    """Return the share of the move (du, dv) that crosses none of the edges listed to the outside.
-
-    1 if it crosses none; else half of the way to the first.
-    """
-    share = 1.0
-    for s in range(n_near):
-        e = near[s]
-        au, av = edge[e, 0] - spot.x, edge[e, 1] - spot.y
-        eu, ev = edge[e, 2] - edge[e, 0], edge[e, 3] - edge[e, 1]
         before = ev * au - eu * av  # left is positive
         after = before + eu * dv - ev * du
-        if before < 0.0 or after >= 0.0:
-            continue
-        t = before / (before - after)
-        along = eu * (t * du - au) + ev * (t * dv - av)
-        if 0.0 <= along <= eu * eu + ev * ev:
-            share = min(share, 0.5 * t)
+        if after < 0.0 and after < before:
+            share = min(share, 0.5 * max(before / (before - after), 0.0))
     return share

@@ -200,12 +200,44 @@ def _settle_ends(m: int, chain: F8, trace: F8, margin: float) -> bool:
     return True
 
 
+@inline
+def _hides_end(m: int, chain: F8, other: F8) -> bool:
+    """Whether a chain hides the rim around an end of another."""
+    length = chain[_LEAVE] - chain[_ENTER]
+    for at in (other[_ENTER], other[_LEAVE]):
+        offset = at - chain[_ENTER]
+        if offset < 0.0:
+            offset += m
+        elif offset >= m:
+            offset -= m
+        if 1e-9 < offset < length - 1e-9:
+            return True
+    return False
+
+
+@inner
+def _choose_side(m: int, chains: F8, n_chains: int, trace: F8) -> None:
+    """Of two chains that hide each other keep that of the least edge.
+
+    They meet in the dot: it stands in a corner where the inside touches itself.
+    """
+    for i in range(n_chains):
+        for j in range(n_chains):
+            if i == j or chains[i, _KEPT] == 0.0 or chains[j, _KEPT] == 0.0:
+                continue
+            if not _hides_end(m, chains[i], chains[j]) or not _hides_end(m, chains[j], chains[i]):
+                continue
+            if trace[int(chains[i, _FIRST]), 4] > trace[int(chains[j, _FIRST]), 4]:
+                chains[j, _KEPT] = 0.0
+
+
 @inner
 def _drop_hidden(cell: F8, m: int, chains: F8, n_chains: int, trace: F8, near2: float) -> int:
     """Keep the chains that bound the dot's piece, sorted by where they enter; return how many."""
     kept = 0
     for i in range(n_chains):
         chains[i, _KEPT] = 0.0 if _hides(cell, m, chains[i], trace, 0.0, 0.0, near2) else 1.0
+    _choose_side(m, chains, n_chains, trace)
     for i in range(n_chains):
         if chains[i, _KEPT] == 0.0:
             continue

@@ -2,7 +2,8 @@
 
 All compartments share flat arrays. Row c of `grid_real` holds ``x0, y0, h, 1/h`` and the
 compartment's box ``xmin, ymin, xmax, ymax``; row c of `grid_int` holds ``nx, ny, first cell, kind,
-first border edge`` with kind 0 for a rectangle, whose box is its exact border, and 1 for a polygon.
+first border edge, convex``. Kind is 0 for a rectangle, whose box is its exact border, and 1 for a
+polygon; convex is 0 or 1.
 """
 
 from __future__ import annotations

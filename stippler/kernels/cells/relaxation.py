@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from stippler.kernels.cells.border import (
+    NOWHERE,
     border_distance,
     free_share,
     gather_edges,
@@ -20,12 +21,13 @@ from stippler.kernels.cells.border import (
     outline_of_lanes,
     outline_within,
     put_numbers,
-    share_before_walls,
+    reach2_of_outline,
     sum_area,
     sum_field,
 )
 from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
 from stippler.kernels.cells.grid import seen_distance, spot_of
+from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
 from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
 from stippler.kernels.cells.tables import (
@@ -51,6 +53,7 @@ from stippler.kernels.cells.voronoi import (
 from stippler.kernels.machine.jit import ZERO, bare_kernel, inline, inner, merged
 from stippler.kernels.machine.simd import (
     BUFFER,
+    LANES,
     get,
     moments_of,
     put,
@@ -60,8 +63,8 @@ from stippler.kernels.machine.simd import (
     store_lanes,
 )
 
-INNER, RIM, TOO_MANY_CORNERS = 0, 1, 2
-"""What a cell is: bounded by dots alone; by a border as well; not computed."""
+INNER, RIM, TOO_MANY_CORNERS, KEPT = 0, 1, 2, 3
+"""What a cell is: bounded by dots alone; near a border; not computed; near a border, and kept."""
 
 
 def relax_dots(
@@ -83,7 +86,7 @@ def relax_dots(
         Results.
     cells
         Result, by row, unless empty: mass, centroid relative to the dot, area, second moment of
-        area.
+        area, square of the farthest corner's distance.
     outlines
         Results, unless empty.
     """
@@ -111,10 +114,12 @@ def _relax(
     pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
+    S = stack_ints(BUFFER)
     for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
         put(N, k, np.int32(0))
+        put(S, k, np.int32(0))
     for w in range(start, stop):
         i = w if is_all else which[w]
         x, y = dots.x[i], dots.y[i]
@@ -140,19 +145,31 @@ def _relax(
             is_rim = is_rim or get(N, k) < 0
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
-            _keep_star(N, m if is_packed else ZERO, i, stars)
+            n_star = ZERO
+            if is_rim and grid.whole[c, 5] == 1:
+                n_star = _star_at_border(N, S, m, is_packed, n, grid.whole[c, 4], pads)
+            if n_star >= 3:
+                moves.kind[i] = KEPT
+                _keep_star(S, n_star, i, stars)
+            else:
+                _keep_star(N, m if is_packed else ZERO, i, stars)
         if is_fixed:
             continue
         if len(outlines.n_sides):
             _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
-        du, dv = _way_to_centroid(U, V, N, m, is_packed, n, dots, field, spot, over, i, cells, pads)
-        if n:
+        mass, du, dv = _centroid_of(U, V, m, is_packed, n, field, spot, i, cells, pads)
+        if n and mass > 0.0:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
-            share = free_share(pads.out, n, du, dv, margin, True)
-            du, dv = share * du, share * dv
-            # in the narrowest cusps an outline may be wrong; no wall is crossed all the same
-            share = share_before_walls(border.edge, pads.near, n_near, spot, du, dv)
-            du, dv = share * du, share * dv
+            area = mass
+            if len(field.sums):
+                area, _u, _v, _second = sum_area(pads.out, n)
+            du, dv = move_in_piece(pads.out, n, area, du, dv, over, margin)
+            if crosses_border(border.edge, pads.near, n_near, spot, du, dv):
+                du = dv = 0.0
+        elif over < 1.0 or (
+            over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)
+        ):
+            du, dv = over * du, over * dv
         moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
         moves.y[i] = min(max(y + dv, grid.real[c, 5]), grid.real[c, 7])
         moves.gone[i] = math.sqrt(du * du + dv * dv)
@@ -228,15 +245,15 @@ def _cell_of_dot(
 
 
 @merged
-def _way_to_centroid(
-    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot,
-    over: float, i: int, cells: F8, pads: Pads,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+def _centroid_of(
+    U: Any, V: Any, m: int, is_packed: bool, n: int, field: Field, spot: Spot, i: int, cells: F8,
+    pads: Pads,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return a cell's mass and the way to its (weighted) centroid; 0 without mass."""
     is_whole = n == 0
     if is_packed and n == 0 and len(field.sums) == 0 and len(cells) == 0:
-        area, du, dv = moments_of(U, V, m)
-        area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+        mass, du, dv = moments_of(U, V, m)
+        mass, du, dv = 0.5 * mass, du / 6.0, dv / 6.0
     else:
         if n == 0:
             n = m
@@ -244,25 +261,23 @@ def _way_to_centroid(
                 outline_of_lanes(U, V, m, pads.out)
             else:
                 outline_of_cell(pads.cell, m, pads.out)
-        area = du = dv = 0.0
+        mass = du = dv = 0.0
         if len(field.sums) == 0 or len(cells):
-            area, du, dv, second = sum_area(pads.out, n)
-        if len(cells):
-            cells[i, 3], cells[i, 4] = area, second
+            mass, du, dv, second = sum_area(pads.out, n)
+            if len(cells):
+                cells[i, 3], cells[i, 4], cells[i, 5] = mass, second, reach2_of_outline(pads.out, n)
         if len(field.sums):
-            area, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
-    if area > 0.0:
-        du, dv = du / area, dv / area
+            mass, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
+    if mass > 0.0:
+        du, dv = du / mass, dv / mass
     else:
-        area = du = dv = 0.0
+        mass = du = dv = 0.0
     if len(cells):
-        cells[i, 0], cells[i, 1], cells[i, 2] = area, du, dv
+        cells[i, 0], cells[i, 1], cells[i, 2] = mass, du, dv
     if len(field.sums) and is_whole:  # next to nothing can have its centroid anywhere, by rounding
-        share = free_share(pads.out, n, du, dv, 0.0, False)
+        share = free_share(pads.out, n, du, dv)
         du, dv = share * du, share * dv
-    if over < 1.0 or (over > 1.0 and is_packed and _is_in_cell(N, m, dots, spot, over, du, dv)):
-        du, dv = over * du, over * dv
-    return du, dv
+    return mass, du, dv
 
 
 @inner
@@ -310,6 +325,34 @@ def _is_in_cell(N: Any, m: int, dots: Dots, spot: Spot, over: float, du: float, 
             if a * over * du + b * over * dv > 0.5 * (a * a + b * b):
                 return False
     return True
+
+
+@inner
+def _star_at_border(
+    N: Any, S: Any, m: int, is_packed: bool, n: int, first_edge: int, pads: Pads
+) -> int:
+    """Put what lies beyond a cell's sides into S; return how many, 0 if it cannot be kept."""
+    out, count = pads.out, ZERO
+    if n == 0 and not is_packed:
+        return int(ZERO)
+    for s in range(n if n > 0 else m):
+        if n > 0:
+            j = int(out[s, 4])
+            if out[s, 5] != 0.0 or j == NOWHERE:
+                return int(ZERO)
+            if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
+                continue
+        else:
+            j = get(N, s)
+            if j < 0:
+                j -= first_edge
+        if count + 3 > LANES:
+            return int(ZERO)
+        put(S, count, np.int32(j))
+        count += 1
+    for k in range(2):
+        put(S, count + k, get(S, k))
+    return int(count)
 
 
 @inline

@@ -403,6 +403,52 @@ def corners_of_star(
 
 
 @_operation
+def corners_of_lines(typing_context: Any, A: Any, B: Any, C: Any, m: Any, U: Any, V: Any) -> Any:
+    """Put the corners of a cell with known sides into U, V; return those that turn the wrong way.
+
+    Side k lies on the line ``A u + B v = C``, the dot where less; the first two sides follow once
+    more behind the m. Corner k is where sides k and k + 1 meet.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        A_, B_, C_, m_, U_, V_ = args
+        a0, b0, c0 = (_load(builder, row, _I8(0), LANES) for row in (A_, B_, C_))
+        a1, b1, c1 = (_next_lane(builder, row) for row in (a0, b0, c0))
+        cross = _sub(builder, _mul(builder, a0, b1), _mul(builder, b0, a1))
+        scale = builder.fdiv(ir.Constant(cross.type, [1.0] * LANES), cross)
+        u = _mul(builder, _sub(builder, _mul(builder, c0, b1), _mul(builder, c1, b0)), scale)
+        v = _mul(builder, _sub(builder, _mul(builder, a0, c1), _mul(builder, a1, c0)), scale)
+        for at in (0, FRONT):
+            _store(builder, u, U_, _I8(at))
+            _store(builder, v, V_, _I8(at))
+        good = builder.fcmp_ordered(">", cross, ir.Constant(cross.type, [0.0] * LANES))
+        bad = builder.and_(builder.not_(good), _lanes_below(builder, m_, LANES))
+        return _mask_bits(builder, bad, LANES)
+
+    return types.int64(A, B, C, types.int64, U, V), generate
+
+
+@_operation
+def backward_sides(typing_context: Any, A: Any, B: Any, m: Any, U: Any, V: Any) -> Any:
+    """Return bits for the corners whose side on to the next corner runs backwards."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        A_, B_, m_, U_, V_ = args
+        u, v, a, b = (_load(builder, row, _I8(0), LANES) for row in (U_, V_, A_, B_))
+        a, b = _next_lane(builder, a), _next_lane(builder, b)
+        eu = _sub(builder, _next_lane(builder, u), u)
+        ev = _sub(builder, _next_lane(builder, v), v)
+        forward = _sub(builder, _mul(builder, ev, a), _mul(builder, eu, b))
+        length2 = _add(builder, _mul(builder, a, a), _mul(builder, b, b))
+        least = _mul(builder, length2, ir.Constant(length2.type, [-1e-13] * LANES))
+        good = builder.fcmp_ordered(">=", forward, least)
+        bad = builder.and_(builder.not_(good), _lanes_below(builder, m_, LANES))
+        return _mask_bits(builder, bad, LANES)
+
+    return types.int64(A, B, types.int64, U, V), generate
+
+
+@_operation
 def outside_box(typing_context: Any, U: Any, V: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Any:
     """Return bits for the corners outside a box, lanes beyond the cell included."""
 

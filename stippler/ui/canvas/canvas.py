@@ -6,28 +6,27 @@ there, at the cost of a rectangle.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import moderngl
-import numpy as np
 from imgui_bundle import imgui
-from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.preview import Preview
 from stippler.editor.session import Session
-from stippler.editor.tools.toolbox import Chosen
+from stippler.editor.tools.selection import Selection
 from stippler.ui.canvas.lens import MARGIN, Glass
 from stippler.ui.canvas.patch import Patch
 from stippler.ui.look import Look
 from stippler.ui.widgets import Rect
 
 if TYPE_CHECKING:
-    from stippler.drawing.document import Document
-    from stippler.drawing.drawing import Page
+    from stippler.render.frame import Frame
     from stippler.render.lens import LensPass
     from stippler.render.renderer import Renderer
+    from stippler.render.scene import Scene
 
 _RIM = 1.5  # the theme's pixels; each of the two lines of a lens's rim
 
@@ -48,9 +47,6 @@ class Canvas:
         self._target: moderngl.Framebuffer | None = None
         self._drawn: object = None
         self._uploaded: object = None
-        self._edited: Document | None = None  # whose dots are on the GPU
-        self._cursor = 0  # how far its changes are
-        self._selected: NDArray[np.int64] = np.empty(0, np.int64)
         self._lens: LensPass | None = None  # with the first look through it
         self._glass: Glass | None = None  # of this frame
         self._lens_drawn: object = None
@@ -97,7 +93,7 @@ class Canvas:
     def draw(
         self,
         session: Session,
-        selection: Chosen,
+        selection: Selection,
         camera: Camera,
         look: Look,
         preview: Preview | None,
@@ -105,72 +101,41 @@ class Canvas:
         """Draw the page if it would look different from the last time; return whether it did."""
         if self._target is None or self._texture is None:
             return False
-        size_px = self._texture.size
         content = _content(session, selection)
-        adjustment = session.adjustment if look.reference_opacity else NEUTRAL
+        frame = _frame(camera, self._texture.size, look, session)
         whole = preview if preview is None or preview.footprint is None else None
-        shown = (content, look.theme, look.reference_opacity, adjustment, look.dots_shown, whole)
-        is_new = (camera, size_px, shown) != self._drawn
+        page = (content, replace(frame, preview=whole))
+        is_new = page != self._drawn
         if is_new:
-            self._draw_page(session, selection, camera, look, whole)
-            self._drawn = (camera, size_px, shown)
+            self._draw_page(session, selection, replace(frame, preview=whole))
+            self._drawn = page
             self.n_drawn += 1
         if self._glass is not None and session.drawing is not None:
-            self._draw_lens(self._glass, shown, look, preview)
+            glass = replace(frame, camera=self._glass.camera, preview=preview)
+            self._draw_lens((content, glass, self._lens), glass)
         self._glass = None
         if self._made is not None:
-            self.patch.draw(preview, self._made, camera, size_px, look, shown)
+            self.patch.draw(self._made, replace(frame, preview=preview), page)
         return is_new
 
-    def _draw_page(
-        self,
-        session: Session,
-        selection: Chosen,
-        camera: Camera,
-        look: Look,
-        preview: Preview | None,
-    ) -> None:
+    def _draw_page(self, session: Session, selection: Selection, frame: Frame) -> None:
         assert self._target is not None
-        assert self._texture is not None
         if session.drawing is None:
             self._target.use()
-            self._target.clear(*look.theme.desk, 1.0)
+            self._target.clear(*frame.desk, 1.0)
             return
-        renderer, colours = self._renderer(), look.theme
-        self._upload(renderer, session, selection, session.drawing.page)
-        reference = session.reference if look.reference_shown else None
-        renderer.set_reference(
-            reference.picture if reference else None, look.reference_opacity, session.adjustment
-        )
-        renderer.set_preview(preview)
-        renderer.draw(
-            camera,
-            self._texture.size,
-            self._target,
-            paper=colours.paper,
-            desk=colours.desk,
-            ink=colours.ink,
-            dots=look.dots_shown,
-        )
-        renderer.set_preview(None)
+        renderer = self._renderer()
+        self._upload(renderer.scene, session, selection)
+        if frame.opacity:
+            renderer.scene.set_reference(session.reference)
+        renderer.draw(frame, self._target)
 
-    def _draw_lens(self, glass: Glass, shown: object, look: Look, preview: Preview | None) -> None:
+    def _draw_lens(self, key: object, frame: Frame) -> None:
         """Draw what the lens shows, if that is not what it showed the last time."""
         assert self._lens is not None
-        key = (glass.camera, shown, self._lens, preview)
         if key == self._lens_drawn:
             return
-        from stippler.render.lens import Colors
-
-        colours, renderer = look.theme, self._renderer()
-        renderer.set_preview(preview)
-        self._lens.draw(
-            renderer,
-            glass.camera,
-            Colors(colours.paper, colours.desk, colours.ink),
-            dots=look.dots_shown,
-        )
-        renderer.set_preview(None)
+        self._lens.draw(self._renderer(), frame)
         self._lens_drawn = key
         self.n_lens_drawn += 1
 
@@ -194,33 +159,15 @@ class Canvas:
             self._made = Renderer(self._ctx)
         return self._made
 
-    def _upload(self, renderer: Renderer, session: Session, selection: Chosen, page: Page) -> None:
+    def _upload(self, scene: Scene, session: Session, selection: Selection) -> None:
         """Bring what has changed since the last call to the GPU."""
         content = _content(session, selection)
-        if content == self._uploaded:
+        if content == self._uploaded or session.drawing is None:
             return
-        renderer.set_page(page.width_mm, page.height_mm)
-        document = session.document
-        assert document is not None
-        self._upload_edited(renderer, document, selection)
-        self._uploaded, self._edited = content, document
-
-    def _upload_edited(self, renderer: Renderer, document: Document, selection: Chosen) -> None:
-        cursor = self._cursor if document is self._edited else 0
-        changed, selected = document.changes.since(cursor), selection.mask(document)
-        dots, rows = document.dots, changed.rows
-        if document is not self._edited or rows is None or renderer.n_dots == 0:
-            renderer.set_dots(dots, selected)
-        else:
-            if selection.ids is not self._selected:
-                for ids in (self._selected, selection.ids):
-                    there = document.rows(ids)
-                    rows = np.union1d(rows, there[there >= 0])
-            if len(rows) or len(dots) != renderer.n_dots:
-                renderer.update_dots(dots, rows, selected)
-            if changed.places:
-                renderer.set_positions(dots.position_mm, dots.radius_mm)
-        self._selected, self._cursor = selection.ids, changed.cursor
+        self._uploaded = None  # what fails is tried again
+        assert session.document is not None
+        scene.sync(session.document, selection.ids)
+        self._uploaded = content
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
         if self._texture is None or self._texture.size != size_px:
@@ -246,7 +193,25 @@ class Canvas:
             self._made.release()
 
 
-def _content(session: Session, selection: Chosen) -> tuple[int, int, int]:
+def _frame(camera: Camera, size_px: Size, look: Look, session: Session) -> Frame:
+    """Return how a look shows the page."""
+    from stippler.render.frame import FIXED, SELECTED, Frame
+
+    theme, opacity = look.theme, look.reference_opacity if session.reference else 0.0
+    return Frame(
+        camera,
+        size_px,
+        paper=theme.paper,
+        desk=theme.desk,
+        ink=theme.ink,
+        marks=(FIXED, SELECTED) if look.marks_shown else None,
+        dots=look.dots_shown,
+        opacity=opacity,
+        adjustment=session.adjustment if opacity else NEUTRAL,
+    )
+
+
+def _content(session: Session, selection: Selection) -> tuple[int, int, int]:
     """Return what tells one state of the dots from another."""
     edited = session.document.revision if session.document is not None else -1
     return session.revision, edited, selection.revision

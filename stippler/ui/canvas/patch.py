@@ -7,6 +7,7 @@ dots there are.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import moderngl
@@ -14,10 +15,10 @@ from imgui_bundle import imgui
 
 from stippler.camera import Camera, Size
 from stippler.drawing.preview import Footprint, Preview
-from stippler.ui.look import Look
 from stippler.ui.widgets import Rect
 
 if TYPE_CHECKING:
+    from stippler.render.frame import Frame
     from stippler.render.renderer import Renderer
 
 _STEP_PX = 64  # a tip that grows needs another texture only now and then
@@ -65,34 +66,17 @@ class Patch:
         uv = (0.0, h / texture.height), (w / texture.width, 0.0)
         imgui.get_background_draw_list().add_image(imgui.ImTextureRef(texture.glo), low, high, *uv)
 
-    def draw(
-        self,
-        preview: Preview | None,
-        renderer: Renderer,
-        camera: Camera,
-        size_px: Size,
-        look: Look,
-        page: object,
-    ) -> None:
-        """Draw it if it would look different; `page` tells states of all the rest apart."""
+    def draw(self, renderer: Renderer, frame: Frame, page: object) -> None:
+        """Draw its part of a frame if it would look different; `page` tells all the rest apart."""
         if self.box is None or self._target is None:
             return
-        key = (preview, self.box, camera, page)
+        key = (frame, self.box, page)
         if key == self._drawn:
             return
         left, top, right, bottom = self.box
         part_px = (right - left, bottom - top)
-        renderer.set_preview(preview)
-        renderer.draw(
-            camera.tile((left, top), part_px, size_px),
-            part_px,
-            self._target,
-            paper=look.theme.paper,
-            desk=look.theme.desk,
-            ink=look.theme.ink,
-            dots=look.dots_shown,
-        )
-        renderer.set_preview(None)
+        tile = frame.camera.tile((left, top), part_px, frame.size_px)
+        renderer.draw(replace(frame, camera=tile, size_px=part_px), self._target)
         self._drawn = key
         self.n_drawn += 1
 

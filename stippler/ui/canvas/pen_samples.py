@@ -37,7 +37,8 @@ class PenSamples:
         key = (row_px, theme, scale)
         if self._texture is not None and key == self._drawn:
             return self._texture
-        from stippler.render.renderer import Renderer  # late, for the first frame's sake
+        from stippler.render.frame import Frame  # late, for the first frame's sake
+        from stippler.render.renderer import Renderer
 
         self.close()
         size_px = (row_px[0], row_px[1] * len(PENS))
@@ -45,16 +46,17 @@ class PenSamples:
         self._texture = self._ctx.texture(size_px, 4)
         target = self._ctx.framebuffer([self._texture])
         renderer = Renderer(self._ctx)
-        renderer.set_page(*page)
+        renderer.scene.set_page(*page)
         rows = [_strip(pen, k, page) for k, pen in enumerate(PENS)]
-        renderer.set_dots(
+        renderer.scene.set_dots(
             Dots(
                 **{f.name: np.concatenate([getattr(r, f.name) for r in rows]) for f in fields(Dots)}
             )
         )
         camera = Camera((page[0] / 2, page[1] / 2), scale)
         paper = theme.paper
-        renderer.draw(camera, size_px, target, paper=paper, desk=paper, ink=theme.ink, marks=None)
+        frame = Frame(camera, size_px, paper=paper, desk=paper, ink=theme.ink, marks=None)
+        renderer.draw(frame, target)
         renderer.release()
         self._ctx.screen.use()
         target.release()

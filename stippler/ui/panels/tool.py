@@ -1,4 +1,4 @@
-"""The brush in use: its name, tip and parameters; and what can be done to a selection."""
+"""The tool at hand: its parameters and commands; of a brush, its name, tip and stroke, too."""
 
 from __future__ import annotations
 
@@ -10,81 +10,101 @@ from typing import Any
 from imgui_bundle import imgui
 
 from stippler.brushes.brush import LARGEST_MM, SMALLEST_MM, Brush
-from stippler.brushes.kinds import Parameter
+from stippler.brushes.kinds import Parameter, Value
 from stippler.brushes.tip import TIP_SHAPES, Tip
 from stippler.editor.commands import Commands
-from stippler.editor.painting import Painting
+from stippler.editor.tools.brush_shelf import BrushShelf
+from stippler.editor.tools.brush_tool import BrushTool
+from stippler.editor.tools.tool import Tool
+from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import ParameterError
 from stippler.ui.panels.tip_editor import draw_tip_editor
 from stippler.ui.widgets import Widgets
 
-_RESIZE_PERCENT = 10.0
 _SMOOTHINGS = ("none", "rope", "window")
 _PRESSURES = ("none", "speed", "key")
 _PRESSURE_LABELS = ("Always full", "Slower is stronger", "Alt makes it light")
 
 
-def draw_brush(widgets: Widgets, painting: Painting, commands: Commands) -> None:
-    """Draw the panel."""
-    toolbox = painting.toolbox
-    brush = toolbox.brush
-    if brush is None:
-        widgets.heading("No brush")
-        widgets.caption("Choose a brush in the strip at the left, or by its letter.")
+def draw_tool(widgets: Widgets, toolbox: Toolbox, commands: Commands, n_selected: int) -> None:
+    """Draw the panel: what the tool is called and does, its values, and its commands."""
+    tool = toolbox.tool
+    if tool is None:
+        widgets.heading("No tool")
+        widgets.caption("Choose a tool in the strip at the left, or by its letter.")
         return
-    widgets.heading(brush.about.label)
-    widgets.caption(brush.about.tip)
-    _draw_presets(widgets, painting)
-    brush = toolbox.brush or brush
+    widgets.heading(tool.label)
+    widgets.caption(tool.tip)
+    if isinstance(tool, BrushTool):
+        _draw_brush(widgets, toolbox, tool)
+    else:
+        for name, value in _draw_parameters(widgets, tool).items():
+            tool.set(name, value)
+    if tool.commands:
+        widgets.rule()
+        _draw_commands(widgets, commands, tool.commands, n_selected)
+
+
+def _draw_parameters(widgets: Widgets, tool: Tool) -> dict[str, Value]:
+    """Draw a tool's parameters; return those that were changed."""
+    changed = {}
+    for parameter in tool.parameters:
+        if parameter.only is None or tool.value(parameter.only[0]) in parameter.only[1]:
+            before = tool.value(parameter.name)
+            after = _draw_parameter(widgets, before, parameter)
+            if after != before:
+                changed[parameter.name] = after
+    return changed
+
+
+def _draw_brush(widgets: Widgets, toolbox: Toolbox, tool: BrushTool) -> None:
+    _draw_presets(widgets, toolbox.shelf, tool)
+    brush = tool.brush
     changes: dict[str, Any] = {}
-    if brush.about.rhythm != "select":
-        _draw_radius(widgets, brush, changes)
-    values = dict(brush.values)
-    for parameter in brush.about.parameters:
-        if parameter.only is None or brush.value(parameter.only[0]) in parameter.only[1]:
-            values[parameter.name] = _draw_parameter(widgets, brush, parameter)
-    if any(brush.value(name) != value for name, value in values.items()):
-        changes["values"] = values
-    if brush.about.rhythm in ("arc", "time"):
+    _draw_radius(widgets, brush, changes)
+    if values := _draw_parameters(widgets, tool):
+        changes["values"] = {**brush.values, **values}
+    if tool.kind.has_tip:
         widgets.rule()
         _draw_tip(widgets, brush, changes)
         widgets.rule()
         _draw_stroke(widgets, brush, changes)
     if changes:
         with contextlib.suppress(ParameterError):  # half typed; the field shows the old one again
-            toolbox.set_brush(replace(brush, **changes))
-    if brush.about.rhythm == "select":
-        widgets.rule()
-        _draw_selection(widgets, painting, commands)
+            tool.brush = replace(brush, **changes)
 
 
-def _draw_presets(widgets: Widgets, painting: Painting) -> None:
-    toolbox = painting.toolbox
-    brush = toolbox.brush
-    assert brush is not None
-    same = [k for k, other in enumerate(toolbox.brushes) if other.kind == brush.kind]
-    if len(same) > 1:
-        names = [toolbox.brushes[k].name for k in same]
+def _draw_presets(widgets: Widgets, shelf: BrushShelf, tool: BrushTool) -> None:
+    kind = tool.kind.name
+    names = [brush.name for brush in shelf.of(kind)]
+    if len(names) > 1:
         chosen = widgets.choice(
-            "Preset", names, same.index(toolbox.chosen), "Brushes of this type that you have made."
+            "Preset", names, shelf.place(kind), "Brushes of this type that you have made."
         )
-        toolbox.choose(same[chosen])
-        brush = toolbox.brush or brush
+        shelf.use(kind, chosen)
+    brush = tool.brush
     widgets.label("Name")
     _, name = imgui.input_text("##Name", brush.name)
     widgets.note("Name")
     widgets.tip("How the history and the list of presets call this brush.")
     if name.strip() and name != brush.name:
-        toolbox.set_brush(replace(brush, name=name[:60]))
-    gap = 8.0 * widgets.scale
-    width = (imgui.get_content_region_avail().x - gap) / 2
+        tool.brush = replace(brush, name=name[:60])
+    width = (imgui.get_content_region_avail().x - 2 * widgets.gap) / 3
     if widgets.button(
         "Copy brush", "Makes another brush of this type, kept for the next time.", width=width
     ):
-        toolbox.copy_brush()
-    imgui.same_line(0.0, gap)
-    if widgets.button("Delete brush", "Forgets this brush.", width=width, enabled=len(same) > 1):
-        toolbox.delete_brush()
+        shelf.copy(kind)
+    imgui.same_line(0.0, widgets.gap)
+    if widgets.button("Reset brush", "Tip and values as they were at first.", width=width):
+        shelf.reset(kind)
+    imgui.same_line(0.0, widgets.gap)
+    if widgets.button(
+        "Delete brush",
+        "Forgets this brush; the command Restore deleted brush brings it back.",
+        width=width,
+        enabled=len(names) > 1,
+    ):
+        shelf.delete(kind)
     widgets.rule()
 
 
@@ -100,8 +120,7 @@ def _draw_radius(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> Non
         changes["radius_mm"] = radius
 
 
-def _draw_parameter(widgets: Widgets, brush: Brush, about: Parameter) -> Any:
-    value = brush.value(about.name)
+def _draw_parameter(widgets: Widgets, value: Any, about: Parameter) -> Any:
     if about.options:
         labels = [option.capitalize() for option in about.options]
         return about.options[
@@ -179,24 +198,14 @@ def _draw_stroke(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> Non
         changes["pressure"] = _PRESSURES[chosen]
 
 
-def _draw_selection(widgets: Widgets, painting: Painting, commands: Commands) -> None:
-    n = painting.n_selected
-    widgets.caption(f"{n:,} dots selected" if n else "No dots selected")
-    gap = 8.0 * widgets.scale
-    width = (imgui.get_content_region_avail().x - gap) / 2
-    actions = (
-        ("Delete", commands["selection.delete"].hint, painting.delete),
-        ("Duplicate", commands["selection.duplicate"].hint, painting.duplicate),
-        ("Fix dots", "They stay where they are from now on.", lambda: painting.fix(True)),
-        ("Free dots", "They may move again.", lambda: painting.fix(False)),
-        ("Relax dots", "One step of relaxation.", painting.relax),
-        ("Jitter dots", "By up to a fifth of their mean distance.", painting.jitter),
-        ("Larger", "By 10 percent.", lambda: painting.resize(_RESIZE_PERCENT)),
-        ("Smaller", "By 10 percent.", lambda: painting.resize(-_RESIZE_PERCENT)),
-    )
-    for k, (label, tip, act) in enumerate(actions):
+def _draw_commands(
+    widgets: Widgets, commands: Commands, names: tuple[str, ...], n_selected: int
+) -> None:
+    widgets.caption(f"{n_selected:,} dots selected" if n_selected else "No dots selected")
+    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
+    for k, name in enumerate(names):
+        command = commands[name]
         if k % 2:
-            imgui.same_line(0.0, gap)
-        if widgets.button(label, tip, width=width, enabled=n > 0):
-            act()
-    widgets.caption("Drag a selected dot to move them all.")
+            imgui.same_line(0.0, widgets.gap)
+        if widgets.button(command.short, command.explained, width=width, enabled=command.enabled):
+            command.run()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.brushes.kinds import KINDS
 from stippler.editor.commands import Commands
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.ui.icons import Pen, draw_icon
@@ -22,7 +21,7 @@ _FLAGS = (
 
 
 def draw_tools(widgets: Widgets, toolbox: Toolbox, commands: Commands) -> None:
-    """Draw an icon for each type of brush."""
+    """Draw an icon for each tool."""
     viewport, scale = imgui.get_main_viewport(), widgets.scale
     imgui.set_next_window_pos(viewport.work_pos)
     height = viewport.work_size.y - STATUS_HEIGHT * scale
@@ -34,10 +33,10 @@ def draw_tools(widgets: Widgets, toolbox: Toolbox, commands: Commands) -> None:
     imgui.push_style_var(imgui.StyleVar_.scrollbar_size, 5.0 * scale)  # beside the buttons
     imgui.begin("##tools", None, _FLAGS & ~imgui.WindowFlags_.no_scrollbar)
     imgui.pop_style_var(3)
-    used = toolbox.brush.kind if toolbox.brush else ""
+    used = toolbox.name
     _draw_tool(widgets, commands, "", "tool.none", used == "", "The pointer only looks around.")
-    for kind in KINDS:
-        _draw_tool(widgets, commands, kind.name, f"tool.{kind.name}", used == kind.name, kind.tip)
+    for tool in toolbox.tools:
+        _draw_tool(widgets, commands, tool.name, f"tool.{tool.name}", used == tool.name, tool.tip)
     imgui.end()
     imgui.pop_style_var(2)
 
@@ -57,6 +56,6 @@ def _draw_tool(
     icon = _ICON * widgets.scale
     gap = (side - icon) / 2
     colour = widgets.packed(theme.on_accent if used else theme.text)
-    draw_icon(kind, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
+    draw_icon(kind, command.label, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
     widgets.note(command.label)
     widgets.tip(f"{command.hint}\n{tip}")
