@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
+    from stippler.drawing.document import Document
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
+    from stippler.files.native.recovery import Lost
     from stippler.stippling.fill import Filling
     from stippler.stippling.plan import Plan
     from stippler.stippling.stipple import Progress
@@ -67,6 +69,8 @@ class Work:
         What their radii are to be.
     points_mm : (n, 2) float64 or None
         Where an area is to have more dots.
+    document : Document or None
+        A drawing that was kept; nobody else holds it.
     """
 
     stage: str
@@ -77,6 +81,7 @@ class Work:
     moved_mm: NDArray[np.float64] | None = None
     radius_mm: NDArray[np.float32] | None = None
     points_mm: NDArray[np.float64] | None = None
+    document: Document | None = None
 
 
 def stipple_picture(
@@ -156,6 +161,39 @@ def carry_on(
     for made in carry_on(reference, plan, position_mm, radius_mm, n_done):
         solved = made.radius_mm if made.stage == "done" else None
         yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
+
+
+def open_drawing(path: Path, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Open a drawing that was saved."""
+    yield Work(READ)
+    from stippler.drawing.document import Document
+    from stippler.opening import open_file
+
+    document = Document(open_file(path))
+    yield Work(READ, 1, 1)
+    yield from make_ready(is_warm=is_warm)
+    yield Work(PREPARE, 1, 1, document=document)
+
+
+def recover(lost: Lost, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Make a drawing anew that a crash has left, with all its steps."""
+    yield Work(READ)
+    document = recovered(lost)
+    yield from make_ready(is_warm=is_warm)
+    yield Work(PREPARE, 1, 1, document=document)
+
+
+def recovered(lost: Lost) -> Document:
+    """Return the drawing that a crash has left, as its last whole step was."""
+    from stippler.drawing.document import Document
+    from stippler.files.native.drawing_file import drawing_of
+    from stippler.files.native.edit_log import replay
+    from stippler.files.read.picture import picture_of_bytes
+
+    members, journal = lost.read()
+    document = Document(drawing_of(members, picture_of_bytes, lost.name)[0])
+    replay(document, journal.records, picture_of_bytes)
+    return document
 
 
 def fill(outline: Polygon | MultiPolygon, values: Filling) -> Iterator[Work]:
