@@ -35,10 +35,10 @@ def swapped(window):
     sys.stdout.flush()
     os._exit(0)
 glfw.swap_buffers = swapped
-from stippler.cli import main
+from stippler.start import main
 main()
 """
-_EDITOR = "from stippler.cli import main; main()"
+_EDITOR = "from stippler.start import main; main()"
 
 
 def figures(quick: bool = False) -> list[Figure]:

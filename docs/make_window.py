@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 LENS_INPUT = ("click", "--repeat", "7", "--delay", "30", "4", "key", "z")
 CANVAS_LEFT, STATUS_HEIGHT = 342, 28
 CANVAS_TOP = 24
-EDITOR = "from stippler.cli import main; main()"
+EDITOR = "from stippler.start import main; main()"
 
 
 def main() -> None:

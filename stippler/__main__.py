@@ -1,5 +1,5 @@
 """`python -m stippler`."""
 
-from stippler.cli import program
+from stippler.start import program
 
 program()

@@ -40,11 +40,11 @@ class Drawing(_Drawing):
     notes: tuple[str, ...] = ()
     inputs: tuple[Path, ...] = ()
 
-    def save(self, path: str | PathLike[str], *, dpi: float = 300.0) -> None:
+    def save(self, path: str | PathLike[str], *, dpi: float = 300.0, form: str = "") -> None:
         """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi, inputs=self.inputs)
+        save(self, Path(path), dpi=dpi, inputs=self.inputs, form=form)
 
     def _repr_svg_(self) -> str:
         from stippler.files.svg import svg_chunks
@@ -65,6 +65,7 @@ def stipple(
     growth: str = "circular",
     start: str = "top",
     sizes: str = "tone",
+    spacing: str = "even",
     weighted: bool = True,
     pen: str = DEFAULT_PEN,
 ) -> Drawing:
@@ -95,6 +96,9 @@ def stipple(
         Where pulse-density modulation begins.
     sizes : {"tone", "regions"}
         Sizes that meet the tone, or the paper's: by how far pulse-density regions had to grow.
+    spacing : {"even", "lloyd", "delaunay-mean", "springs"}
+        How dots are spaced: evenly without rows, by Lloyd's relaxation alone, or by the paper's
+        comparisons.
     weighted : bool
         Relax by the tone; False is the paper's form, whose light parts fill up.
     pen : str
@@ -124,6 +128,7 @@ def stipple(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=weighted,
         pen=pen,
     )
@@ -170,7 +175,7 @@ def pulse_density(
     image : path, Pillow image or array
         As for `stipple`.
     dots : int
-        How many; met within 1 %.
+        How many.
     tone, growth, start, seed
         As for `stipple`.
     area : shapely Polygon or MultiPolygon, or (m, 2) array, px, optional

@@ -158,7 +158,9 @@ def _copy_into(whole: BinaryIO, target: Path) -> None:
     """Write a finished part into the file that is there; an interrupt waits for the end of it."""
     try:
         _copy(whole, target)
-    except KeyboardInterrupt:
+    except OSError:
+        raise
+    except BaseException:  # a signal that ends the process
         _copy(whole, target)
         raise
 

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import gc
-import os
-import signal
 import sys
+import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.exceptions import TyperException
 
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.machine.numba_import import skip_blas
+from stippler.names import shown
+from stippler.spooled import STDIN, at_hand
+from stippler.stopping import fail, stops
 from stippler.units import DEFAULT_WIDTH_MM
 
 if TYPE_CHECKING:
+    from stippler.drawing.page import Page
     from stippler.stippling.plan import Plan
 
 
@@ -58,6 +61,13 @@ Sizes = Annotated[
         metavar="tone|regions", help="Dot sizes solved for the tone, or the paper's by region."
     ),
 ]
+Spacing = Annotated[
+    str,
+    typer.Option(
+        metavar="METHOD",
+        help="even (no rows), or lloyd, delaunay-mean, springs, as in the paper.",
+    ),
+]
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
@@ -77,10 +87,28 @@ def _version(shown: bool) -> None:
         raise typer.Exit
 
 
+def _install_desktop(wanted: bool) -> None:
+    if wanted:
+        from stippler.desktop import install
+
+        for path in install():
+            typer.echo(f"{shown(path)} is written")
+        raise typer.Exit
+
+
 @app.callback()
 def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+    install_desktop: Annotated[
+        bool,
+        typer.Option(
+            "--install-desktop",
+            callback=_install_desktop,
+            is_eager=True,
+            help="Put the program into the menus of a Linux desktop.",
+        ),
     ] = False,
 ) -> None:
     pass
@@ -117,6 +145,7 @@ def edit(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -130,26 +159,32 @@ def edit(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
     _check_page(tone, width)
-    if file is not None:
-        from stippler.files.read.picture import check_picture
-
-        check_picture(file)  # before a window opens
-    from stippler.app import edit as open_editor
-
     given = _given(context)
-    raise typer.Exit(open_editor(file or _sample(), plan, tone=tone, width_mm=width, given=given))
+    with at_hand(file or _sample()) as picture:
+        if file is not None:
+            from stippler.files.read.picture import check_picture
+
+            check_picture(picture)  # before a window opens
+        from stippler.app import edit as open_editor
+
+        raise typer.Exit(open_editor(picture, plan, tone=tone, width_mm=width, given=given))
 
 
 @app.command()
 def render(
     file: Annotated[Path, typer.Argument(help="A picture.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="Drawing to write: .svg, .png or .csv.")
+        Path,
+        typer.Option("-o", "--output", help="Drawing to write: .svg, .png or .csv; - for output."),
     ],
+    form: Annotated[
+        str, typer.Option("--format", metavar="NAME", help="svg, png or csv, whatever the ending.")
+    ] = "",
     dots: Dots = None,
     width: Width = DEFAULT_WIDTH_MM,
     iterations: Iterations = 20,
@@ -161,6 +196,7 @@ def render(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -168,7 +204,7 @@ def render(
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
     from stippler.export import check_output
 
-    check_output(output, dpi, [file])
+    check_output(output, dpi, [_input(file)], form)
     plan = _plan(
         n_dots=dots,
         size_range_mm=_size_range(size_range),
@@ -178,22 +214,27 @@ def render(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
     _check_page(tone, width)
+    from stippler.export import check_size
     from stippler.progress import stages_shown
 
-    with stages_shown() as show:
-        from stippler.api import draw
+    with at_hand(file) as picture:
+        check_size(output, _page_of(picture, width), dpi, form)
+        with stages_shown() as show:
+            from stippler.api import draw
 
-        show("picture", 0, 1)
-        drawing = draw(file, plan, tone=tone, width_mm=width, show=show)
-        show("write", 0, 1)
-        drawing.save(output, dpi=dpi)
-        show("write", 1, 1)
+            show("picture", 0, 1)
+            drawing = draw(picture, plan, tone=tone, width_mm=width, show=show)
+            show("write", 0, 1)
+            drawing.save(output, dpi=dpi, form=form)
+            stops.written = True
+            show("write", 1, 1)
     for note in drawing.notes:
-        typer.echo(f"stippler: {file}: {note}", err=True)
+        _note(file, note)
 
 
 @app.command()
@@ -214,6 +255,7 @@ def stats(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
 ) -> None:
     """Print the number of dots, their spacing, spectrum and tone error.
@@ -222,32 +264,37 @@ def stats(
     .csv, --reference, --width and --tone say what it was drawn from.
     """
     _check_page(tone, width)
-    from stippler import stats as statistics
+    with at_hand(file) as at, at_hand(reference or file) as seen:
+        if _is_table(file, at):
+            given = _given(context) - {"file", "as_json", "reference", "width_mm", "tone"}
+            if given:
+                raise ParameterError(
+                    "is drawn already", file, "leave out all but --reference, --width and --tone"
+                )
+            from stippler import stats as statistics
 
-    if file.suffix.lower() == ".csv":
-        given = _given(context) - {"file", "as_json", "reference", "width_mm", "tone"}
-        if given:
-            raise ParameterError(
-                "is drawn already", file, "leave out all but --reference, --width and --tone"
+            picture = None if reference is None else seen
+            report = statistics.of_table(at, picture, tone=tone, width_mm=width)
+        else:
+            if reference is not None:
+                raise ParameterError("is for a .csv", "reference", "a picture is its own")
+            plan = _plan(
+                n_dots=dots,
+                size_range_mm=_size_range(size_range),
+                iterations=iterations,
+                seed=seed,
+                first_dots=first_dots,
+                growth=growth,
+                start=start,
+                sizes=sizes,
+                spacing=spacing,
+                weighted=not unweighted,
             )
-        report = statistics.of_table(file, reference, tone=tone, width_mm=width)
-    else:
-        if reference is not None:
-            raise ParameterError("is for a .csv", "reference", "a picture is its own")
-        plan = _plan(
-            n_dots=dots,
-            size_range_mm=_size_range(size_range),
-            iterations=iterations,
-            seed=seed,
-            first_dots=first_dots,
-            growth=growth,
-            start=start,
-            sizes=sizes,
-            weighted=not unweighted,
-        )
-        report, notes = statistics.of_picture(file, plan, tone=tone, width_mm=width)
-        for note in notes:
-            typer.echo(f"stippler: {file}: {note}", err=True)
+            from stippler import stats as statistics
+
+            report, notes = statistics.of_picture(at, plan, tone=tone, width_mm=width)
+            for note in notes:
+                _note(file, note)
     typer.echo(statistics.as_json(report) if as_json else statistics.as_text(report))
 
 
@@ -299,6 +346,35 @@ def _size_range(text: str | None) -> tuple[float, float] | None:
         ) from None
 
 
+def _input(file: Path) -> str | Path:
+    """Return a name under which an input can be told from outputs."""
+    return "/dev/fd/0" if str(file) == STDIN else file
+
+
+def _is_table(file: Path, at: Path) -> bool:
+    """Return whether a file is a table of dots, by its name or, piped, by what is in it."""
+    if at == file:
+        return file.suffix.lower() in (".csv", ".tsv")
+    from stippler.files.read.kinds import HEAD_BYTES, is_table
+
+    with at.open("rb") as stream:
+        return is_table(stream.read(HEAD_BYTES))
+
+
+def _page_of(picture: Path, width_mm: float) -> Page:
+    """Return the page that a picture will have."""
+    from stippler.drawing.page import Page
+    from stippler.files.read.picture import size_of_picture
+
+    columns, rows = size_of_picture(picture)
+    return Page(width_mm, width_mm * rows / columns)
+
+
+def _note(file: Path, note: str) -> None:
+    """Say what is to be known of a drawing."""
+    fail(f"{shown(file)}: {note}", 0)
+
+
 def _check_page(tone: str, width_mm: float) -> None:
     from stippler.drawing.drawing import Page
     from stippler.files.read.picture import check_tone
@@ -307,55 +383,22 @@ def _check_page(tone: str, width_mm: float) -> None:
     Page(width_mm, 1.0)
 
 
-def _terminate(signum: int, frame: Any) -> NoReturn:
-    raise KeyboardInterrupt
-
-
-def main() -> None:
-    """Run the command line and end the process: 0 done, 1 failed, 2 usage, 130 interrupted."""
-    signal.signal(signal.SIGTERM, _terminate)
+def run(args: list[str]) -> int:
+    """Carry out a command; return the exit code, having said in one line what went wrong."""
     skip_blas()
-    args = sys.argv[1:]
-    if not args or args[0] not in (*COMMANDS, "--help", "--version"):
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # of libraries, about files; what matters is told by us
+    if not args or args[0] not in (*COMMANDS, "--help", "--version", "--install-desktop"):
         args = ["edit", *args]  # `stippler photo.jpg`
     try:
-        status = app(args, prog_name="stippler", standalone_mode=False)
-        if status == _INTERRUPTED:  # typer's word for Ctrl-C
-            raise KeyboardInterrupt
+        return int(app(args, prog_name="stippler", standalone_mode=False) or 0)
     except TyperException as error:
-        status = _fail(error.format_message(), error.exit_code, f"see stippler {args[0]} --help")
+        return fail(error.format_message(), error.exit_code, f"see stippler {args[0]} --help")
     except ParameterError as error:
-        status = _fail(str(error), 2)
+        return fail(str(error), 2)
     except StipplerError as error:
-        status = _fail(str(error), 1)
-    except (KeyboardInterrupt, typer.Abort):
-        status = _fail(
-            "stopped; nothing was written" if args[0] == "render" else "stopped", _INTERRUPTED
-        )
+        return fail(str(error), 1)
     except MemoryError:
-        status = _fail("not enough memory; ask for fewer dots or a smaller picture", 1)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = 1
-    sys.exit(status or 0)
-
-
-def program() -> None:
-    """Run `main` as a process; a render ends without taking the interpreter apart.
-
-    Numba's machine code takes half a second to be disposed of, and all files are closed by then.
-    """
-    try:
-        main()
-    except SystemExit as stop:
-        if sys.argv[1:2] != ["render"]:
-            raise
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(int(stop.code or 0))
-
-
-def _fail(message: str, status: int, do: str = "") -> int:
-    line = f"stippler: {message.rstrip('.')}{'; ' + do if do else ''}"
-    typer.echo(" ".join(line.split()), err=True)
-    return status
+        return fail("not enough memory; ask for fewer dots or a smaller picture", 1)
+    except typer.Abort:
+        return fail(stops.line(), _INTERRUPTED)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from stippler.names import shown
+
 
 class StipplerError(Exception):
     """What went wrong, where, and what to do, in one line.
@@ -19,7 +21,7 @@ class StipplerError(Exception):
     def __init__(self, what: str, where: object = "", do: str = "") -> None:
         self.what, self.where, self.do = what, str(where), do
         head = f"{self.where}: {what}" if self.where else what
-        super().__init__(" ".join(f"{head}; {do}".split()) if do else " ".join(head.split()))
+        super().__init__(shown(" ".join(f"{head}; {do}".split() if do else head.split())))
 
 
 class ParameterError(StipplerError, ValueError):

@@ -13,7 +13,7 @@ Show = Callable[[str, int, int], None]
 @contextmanager
 def stages_shown() -> Iterator[Show]:
     """Yield a function that draws the bars."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         yield lambda stage, done, total: None
         return
     from rich.console import Console

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stippler.cli import COMMANDS, main
+from stippler.cli import COMMANDS
 from stippler.files.table import COLUMNS
+from stippler.start import main
 
 WAIT_S = 120
 
@@ -33,10 +34,14 @@ def run(*args, **env):
 def run_here(monkeypatch, capsys, *args):
     """The same without a process of its own, for what ends before any work."""
     monkeypatch.setattr(sys, "argv", ["stippler", *map(str, args)])
-    handler = signal.getsignal(signal.SIGTERM)
+    numbers = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGALRM)
+    handlers = [signal.getsignal(number) for number in numbers]
+    hook = sys.unraisablehook
     with pytest.raises(SystemExit) as stopped:
         main()
-    signal.signal(signal.SIGTERM, handler)
+    sys.unraisablehook = hook
+    for number, handler in zip(numbers, handlers, strict=True):
+        signal.signal(number, handler)
     out, err = capsys.readouterr()
     return subprocess.CompletedProcess(args, stopped.value.code, out, err)
 
@@ -177,7 +182,7 @@ def test_stats_of_what_cannot_be_measured(
         (["--dots", "1.5"], ["--dots", "valid int"]),
         (["--width", "nan"], ["page", "nan"]),
         (["--width", "inf"], ["page", "inf"]),
-        (["--width", "0"], ["page", "more than 0"]),
+        (["--width", "0"], ["page", "0.01 to"]),
         (["--width", "-3"], ["page"]),
         (["--iterations", "-1"], ["iterations"]),
         (["--seed", "-1"], ["seed"]),
@@ -303,7 +308,7 @@ def test_info_names_the_driver_and_the_folders():
 def test_help_imports_nothing_heavy():
     code = (
         "import sys; sys.argv = ['stippler', '--help']\n"
-        "from stippler.cli import main\n"
+        "from stippler.start import main\n"
         "try: main()\n"
         "except SystemExit: pass\n"
         "print([m for m in ('numpy', 'numba', 'PIL', 'shapely', 'moderngl', 'glfw', 'rich')"

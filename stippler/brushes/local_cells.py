@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.document import Document
 from stippler.drawing.reference import Reference
 from stippler.drawing.store import Rows
@@ -22,75 +24,156 @@ MARGIN_SPACINGS = 4.0
 """How far around the dots their neighbours are taken in, in mean spacings."""
 
 
-def centroids_of(document: Document, rows: Rows, reference: Reference | None = None) -> Floats:
-    """Return the centroids of the dots' cells among all dots around; weighted by a reference.
+@dataclass(frozen=True, slots=True, eq=False)
+class LocalCells:
+    """What is known of some dots' cells.
 
-    Dots whose cell is not known, as beyond their area's border, keep their place.
+    Attributes
+    ----------
+    moved_mm : (k, 2) float64
+        Where a step of relaxation takes the dots.
+    area_mm2 : (k,) float64
+    reach_mm : (k,) float64
+        Distance of the farthest corner.
     """
-    out = np.array(document.dots.position_mm[rows])
-    for engine, mine, which in _engines(document, rows, reference):
-        out[which] = engine.relax(mine)
-    return out
+
+    moved_mm: Floats
+    area_mm2: Floats
+    reach_mm: Floats
+
+
+def centroids_of(document: Document, rows: Rows, reference: Reference | None = None) -> Floats:
+    """Return the centroids of the dots' cells among all dots; weighted by a reference.
+
+    Dots whose cell is not known, as beyond their area's border, keep their place. Where walls are
+    in the way it is where relaxation takes the dot; dots at one place are parted.
+    """
+    return cells_of(document, rows, reference).moved_mm
 
 
 def areas_of(document: Document, rows: Rows) -> Floats:
-    """Return the areas of the dots' cells among all dots around, mm²; 0 where it is not known."""
-    out = np.zeros(len(rows))
-    for engine, mine, which in _engines(document, rows, None):
-        out[which] = engine.cell_areas(mine)
-    return out
+    """Return the areas of the dots' cells among all dots, mm²; 0 where it is not known."""
+    return cells_of(document, rows).area_mm2
+
+
+def cells_of(document: Document, rows: Rows, reference: Reference | None = None) -> LocalCells:
+    """Compute the cells of some dots, as they are among all dots of the drawing.
+
+    Dots around are taken in as far as `MARGIN_SPACINGS`, and farther for cells that reach so far
+    that a dot beyond might cut them.
+    """
+    found = LocalCells(
+        np.array(document.dots.position_mm[rows]), np.zeros(len(rows)), np.zeros(len(rows))
+    )
+    left, around = np.arange(len(rows)), None
+    while len(left):
+        at = document.dots.position_mm[rows[left]]
+        around = _box_around(document, at, around)
+        for engine, mine, which in _engines(document, rows[left], around, reference):
+            where = left[which]
+            found.moved_mm[where], found.area_mm2[where], found.reach_mm[where] = engine.look(mine)
+        left = left[_lacks(document, at, found.reach_mm[left], around)]
+        if len(left):
+            margin = 2.1 * found.reach_mm[left][:, None]
+            at = document.dots.position_mm[rows[left]]
+            low, high = (at - margin).min(axis=0), (at + margin).max(axis=0)
+            around = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+    return found
+
+
+def _lacks(document: Document, at: Floats, reach_mm: Floats, around: Box) -> NDArray[np.bool_]:
+    """Tell which cells might be cut by a dot beyond a box, or lean out of it."""
+    page = document.drawing.page
+    room = np.full(len(at), np.inf)
+    for axis, size in enumerate((page.width_mm, page.height_mm)):
+        if around[axis] > 0.0:
+            room = np.minimum(room, at[:, axis] - around[axis])
+        if around[axis + 2] < size:
+            room = np.minimum(room, around[axis + 2] - at[:, axis])
+    lacks: NDArray[np.bool_] = 2.0 * reach_mm > room
+    return lacks
 
 
 def _engines(
-    document: Document, rows: Rows, reference: Reference | None
+    document: Document, rows: Rows, around: Box, reference: Reference | None
 ) -> Iterator[tuple[LocalRelaxation, NDArray[np.intp], NDArray[np.intp]]]:
     """Yield for each area an engine of the dots around, those asked for in it, and in `rows`."""
-    if not len(rows):
-        return
-    around = _box_around(document, document.dots.position_mm[rows])
     near = document.in_box(around)
     near_area = document.dots.area[near]
     for k in np.flatnonzero(np.bincount(document.dots.area[rows])):
         own = near if len(document.drawing.areas) == 1 else near[near_area == k]
-        polygon = _part_of_area(document, int(k), around)
-        if not isinstance(polygon, tuple):
+        outlines, is_box = _part_of_area(document, int(k), around)
+        if not is_box:
             xy = document.dots.position_mm[own]
-            own = own[shapely.intersects_xy(polygon, xy[:, 0], xy[:, 1])]
+            inside = [shapely.intersects_xy(outline, xy[:, 0], xy[:, 1]) for outline in outlines]
+            own = own[np.logical_or.reduce([np.zeros(len(own), np.bool_), *inside])]
         at = np.searchsorted(own, rows)
         found = own[np.minimum(at, len(own) - 1)] == rows if len(own) else at < 0
         if found.any():
-            outline = shapely.box(*polygon) if isinstance(polygon, tuple) else polygon
             density = _density(reference, around)
-            engine = LocalRelaxation(document.dots.position_mm[own], outline, density=density)
+            movable = np.zeros(len(own), np.bool_)
+            movable[at[found]] = True
+            position_mm = document.dots.position_mm[own]
+            engine = LocalRelaxation(position_mm, outlines, density=density, movable=movable)
             yield engine, at[found], np.flatnonzero(found)
 
 
-def _part_of_area(
-    document: Document, k: int, around: Box
-) -> Box | shapely.Polygon | shapely.MultiPolygon:
-    """Return the part of an area in a box: a box again where the area is one."""
+def _part_of_area(document: Document, k: int, around: Box) -> tuple[list[shapely.Polygon], bool]:
+    """Return the compartments of an area in a box, and whether it is one box.
+
+    What the box cuts apart is joined by a frame around it: the parts are one compartment, and
+    their dots see each other. Cells that reach the frame are not known yet.
+    """
+    areas = document.drawing.areas
     box = document.partition.box_of(k)
-    if box is not None:
-        return (
-            max(box[0], around[0]),
-            max(box[1], around[1]),
-            min(box[2], around[2]),
-            min(box[3], around[3]),
-        )
-    part = shapely.clip_by_rect(document.drawing.areas[k].outline_mm, *around)
-    if part.geom_type == "GeometryCollection":  # a corner or an edge that only touches the box
-        part = shapely.MultiPolygon([p for p in part.geoms if p.geom_type == "Polygon"])
-    return part
+    if box is not None and len(areas) == 1:
+        return [_overlap(box, around)], True
+    window = shapely.box(*around)
+    outline: shapely.Geometry = areas[k].outline_mm
+    above = []
+    if k == PAGE_AREA:
+        above = [areas[i].outline_mm for i in areas if i != k]
+        above = [other for other in above if other.intersects(window)]
+    if box is not None and not above:
+        return [_overlap(box, around)], True
+    if above:
+        outline = outline.difference(shapely.unary_union(above))
+    out = []
+    for polygon in _polygons(outline):
+        parts = _polygons(shapely.clip_by_rect(polygon, *around))
+        if len(parts) > 1:
+            width = 0.1 * max(around[2] - around[0], around[3] - around[1])
+            parts.append(window.buffer(width, join_style="mitre").difference(window))
+            parts = _polygons(shapely.unary_union(parts))
+        out += parts
+    return out, False
 
 
-def _box_around(document: Document, position_mm: Floats) -> Box:
+def _overlap(a: Box, b: Box) -> shapely.Polygon:
+    return shapely.box(max(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3]))
+
+
+def _polygons(geometry: shapely.Geometry) -> list[shapely.Polygon]:
+    """Return the polygons of a shape, without the corners and lines it may have as well."""
+    return [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0.0]
+
+
+def _box_around(document: Document, position_mm: Floats, least: Box | None) -> Box:
+    """Return a box around dots with a margin; one that holds `least` if that is given."""
     (x0, y0), (x1, y1) = position_mm.min(axis=0), position_mm.max(axis=0)
     page = document.drawing.page
     whole = math.sqrt(page.width_mm * page.height_mm / len(document.dots))
-    size = max((x1 - x0) * (y1 - y0), 0.0)
-    spacing = math.sqrt(size / len(position_mm)) if len(position_mm) > 8 else whole
+    spacing = whole
+    if len(position_mm) > 8:
+        size, longest = (x1 - x0) * (y1 - y0), max(x1 - x0, y1 - y0)
+        spacing = max(math.sqrt(size / len(position_mm)), longest / len(position_mm))
     margin = MARGIN_SPACINGS * max(spacing, 1e-6 * page.width_mm)
-    return float(x0 - margin), float(y0 - margin), float(x1 + margin), float(y1 + margin)
+    box = (float(x0 - margin), float(y0 - margin), float(x1 + margin), float(y1 + margin))
+    if least is None:
+        return box
+    return (
+        min(box[0], least[0]), min(box[1], least[1]), max(box[2], least[2]), max(box[3], least[3])
+    )  # fmt: skip
 
 
 def _density(reference: Reference | None, box: Box) -> DensityField | None:

@@ -9,7 +9,8 @@ from typing import Any, Self
 
 from stippler.errors import ParameterError
 
-MAX_PAGE_MM = 10_000.0
+MIN_PAGE_MM, MAX_PAGE_MM = 0.01, 10_000.0
+"""A page below a hundredth of a millimetre has no size in a file, and holds no dot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +22,11 @@ class Page:
 
     def __post_init__(self) -> None:
         for name, value in (("width", self.width_mm), ("height", self.height_mm)):
-            if not (math.isfinite(value) and 0 < value <= MAX_PAGE_MM):
+            if not (math.isfinite(value) and MIN_PAGE_MM <= value <= MAX_PAGE_MM):
                 raise ParameterError(
                     f"a {name} of {value:g} mm is no paper",
                     "page",
-                    f"give more than 0 and at most {MAX_PAGE_MM:g} mm",
+                    f"give {MIN_PAGE_MM:g} to {MAX_PAGE_MM:g} mm",
                 )
 
     def to_json(self) -> dict[str, Any]:

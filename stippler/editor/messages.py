@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from stippler.names import shown
+
 INFO, WARNING, ERROR = "info", "warning", "error"
 _SHOWN_S = {INFO: 6.0, WARNING: 15.0, ERROR: 30.0}
 _KEPT = 200
@@ -72,5 +74,5 @@ class Messages:
 
 
 def _shortened(text: str) -> str:
-    line = " ".join(text.split())
+    line = shown(" ".join(text.split()))
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"

@@ -15,6 +15,7 @@ from stippler.editor.rates import StepRate
 from stippler.errors import ParameterError, StipplerError
 from stippler.jobs import work
 from stippler.jobs.work import Source, Work
+from stippler.names import shown
 from stippler.stippling.fill import Filling, fill_drawing
 
 if TYPE_CHECKING:
@@ -340,7 +341,7 @@ class Session:
     def name(self) -> str:
         """File name of the picture that is open or being opened."""
         source = self._asked if self._request is not None and self._asked else self.source
-        return source.path.name if source else "Untitled" if self.drawing else ""
+        return shown(source.path.name) if source else "Untitled" if self.drawing else ""
 
     @property
     def outdated(self) -> bool:

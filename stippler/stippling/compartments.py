@@ -77,6 +77,8 @@ class Compartments:
             shape_of += [i] * len(parts)
         if not polygons:
             raise GeometryError("there is no compartment", "polygon", "give at least one polygon")
+        if len(polygons) == 1 and (one := _as_box(polygons[0])) is not None:
+            return cls._of_rectangle(polygons[0], one)
         border = BorderEdges.of(polygons)
         first = np.searchsorted(border.compartment, np.arange(len(polygons) + 1)).astype(np.int32)
         box = np.array(shapely.bounds(polygons)).reshape(-1, 4)
@@ -96,6 +98,24 @@ class Compartments:
             compartment_of_edge=border.compartment,
             first_edge=first,
             is_convex=_are_convex(border, len(polygons)),
+        )
+
+    @classmethod
+    def _of_rectangle(cls, polygon: Polygon, box: tuple[float, ...]) -> Compartments:
+        """Make the one compartment of a rectangle: brushes ask for one with each stamp."""
+        x0, y0, x1, y1 = box
+        sides = [(x0, y0, x1, y0), (x1, y0, x1, y1), (x1, y1, x0, y1), (x0, y1, x0, y0)]
+        return cls(
+            polygons=[polygon],
+            shape_of=np.zeros(1, np.int32),
+            box=np.array([box]),
+            area=np.array([(x1 - x0) * (y1 - y0)]),
+            kind=np.full(1, RECTANGLE, np.int32),
+            edges=np.array(sides),
+            next_edge=np.array([1, 2, 3, 0], np.int32),
+            compartment_of_edge=np.zeros(4, np.int32),
+            first_edge=np.array([0, 4], np.int32),
+            is_convex=np.ones(1, np.bool_),
         )
 
     def find(
@@ -132,6 +152,21 @@ class Compartments:
         if len(outside):
             self._refuse(points, outside, shape_of_dot)
         return found
+
+    def contain(
+        self, points: NDArray[np.float64], compartment: NDArray[np.int32]
+    ) -> NDArray[np.bool_]:
+        """Tell which points lie in the compartment named for each, or on its border."""
+        box = self.box[compartment]
+        inside: NDArray[np.bool_] = np.logical_and.reduce(
+            [*(points >= box[:, :2]).T, *(points <= box[:, 2:]).T]
+        )
+        asked = np.flatnonzero(inside & (self.kind[compartment] == POLYGON))
+        for c in np.unique(compartment[asked]):
+            mine = asked[compartment[asked] == c]
+            shapely.prepare(self.polygons[c])
+            inside[mine] = shapely.intersects_xy(self.polygons[c], *points[mine].T)
+        return inside
 
     def _check_numbers(self, shape_of_dot: NDArray[np.int32]) -> None:
         last = int(self.shape_of[-1])
@@ -214,6 +249,17 @@ def polygon_of(shape: object, name: str) -> Polygon | MultiPolygon:
 def _polygons_of(shape: object, name: str) -> list[Polygon]:
     geometry = polygon_of(shape, name)
     return list(geometry.geoms) if isinstance(geometry, MultiPolygon) else [geometry]
+
+
+def _as_box(polygon: Polygon) -> tuple[float, ...] | None:
+    """Return the box that a polygon of four corners is, if it is one."""
+    if len(polygon.interiors):
+        return None
+    xy = shapely.get_coordinates(polygon)
+    if len(xy) != 5 or not (xy[1:] == xy[:-1]).any(axis=1).all():
+        return None
+    x0, y0, x1, y1 = polygon.bounds
+    return (x0, y0, x1, y1) if x0 < x1 and y0 < y1 else None
 
 
 def _rectangles(border: BorderEdges, first: NDArray[np.int32]) -> NDArray[np.intp]:

@@ -13,7 +13,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.errors import ParameterError
 from stippler.kernels.halftone.grow_regions import fill_cells, grow
@@ -22,7 +21,6 @@ from stippler.kernels.halftone.scan_order import (
     along_front,
     chamfer,
     order_by_distance,
-    outside_polygon,
 )
 from stippler.stippling.plan import GROWTHS, STARTS
 from stippler.stippling.tone import DotRule
@@ -36,7 +34,8 @@ ENLARGED, REDUCED, DROPPED = 0.75, 0.25, 0.02
 _REACH = 200  # cells; the farthest a region looks for its charge
 _SEEDS_AT_ONCE = 250_000
 _LEVELS_AT_ONCE = 1_000_000  # cells that the front may pass over
-_FEW = 1_000  # dots, of which one is missed
+_SPARE, _SPARE_EACH = 0.01, 5e-7  # of a dot: what rounding may take without a dot being lost
+_MANY_CELLS = 50_000_000
 _VARIANTS = 8
 _SKEW = {"circular": 0.7, "triangular": 0.15}
 _SLOPE = {"circular": 0.8, "triangular": 0.2}  # of the undulating front
@@ -64,7 +63,6 @@ def pulse_density(
     *,
     start: str = "top",
     seed: int = 1,
-    inside: Polygon | MultiPolygon | None = None,
 ) -> Iterator[tuple[float, FirstDots]]:
     """Grow regions that hold one pulse each; yield the share done and all dots so far.
 
@@ -79,41 +77,73 @@ def pulse_density(
     seed : int
         Each region's growth is skewed a little, and the front from the top undulates, as if by
         chance, so that constant density shows no direction; this is the chance.
-    inside : polygon in pixels, optional
-        Only what lies inside counts.
 
     Notes
     -----
-    4 bytes for each super-sampled cell, 10 with "border". Regions line up with the front that
-    they grow from. From the top it is no row of cells but undulates, so that they line up in every
-    direction somewhere.
+    As many dots as the density adds up to, rounded. 4 bytes for each super-sampled cell, 10 with
+    "border". Regions line up with the front that they grow from. From the top it is no row of
+    cells but undulates, so that they line up in every direction somewhere.
     """
     if start not in STARTS:
         raise ParameterError(f"{start!r} is no start", "start", f"one of {', '.join(STARTS)}")
     s = supersampling(density)
+    corner, density = _window(density, s)
+    asked = float(density.sum(dtype=np.float64))
     charge = np.empty((density.shape[0] * s, density.shape[1] * s), np.float32)
-    fill_cells(density, s, charge)
-    if inside is not None:
-        outside_polygon(_edges(inside) * s, charge)
-    asked = float(charge.sum(dtype=np.float64))
-    if 0.5 <= asked < _FEW:
-        charge *= np.float32((round(asked) + 0.01) / asked)  # rounding would lose the last dot
+    fill_cells(density, s, whole_dots(asked), charge)
+    reach = _reach(density, s)
+    spacing = s * _spacing(density)
+    for share, first in grown(charge, asked, growth, start, seed, reach, spacing):
+        yield share, FirstDots(first.position_px / s + corner, first.region_px / np.float32(s * s))
+
+
+def whole_dots(asked: float) -> float:
+    """Return by what a charge is multiplied so that a whole number of dots comes of it."""
+    return (round(asked) + _SPARE) / asked + _SPARE_EACH if asked >= 0.5 else 1.0
+
+
+def grown(
+    charge: NDArray[np.float32], asked: float, growth: str, start: str, seed: int, reach: int,
+    spacing: float,
+) -> Iterator[tuple[float, FirstDots]]:  # fmt: skip
+    """Grow regions over cells whose charge, used up in place, holds about `asked` dots.
+
+    `reach`: how far a region looks; `spacing`: of the dots; both in cells, as what is yielded.
+    """
     n_max = math.ceil(asked * 1.0001) + 16
     points, areas = np.empty((n_max, 2)), np.empty(n_max, np.float32)
-    dy, dx = growth_orders(growth, _reach(density, s))
+    dy, dx = growth_orders(growth, reach)
     cursor = np.zeros(2)
     if start == "border":
         seeds = _border_first(charge)
     else:
-        seeds = _front(charge, s * _spacing(density), _SLOPE[growth], seed)
+        seeds = _front(charge, spacing, _SLOPE[growth], seed)
     for share, order in seeds:
         n = grow(charge, order, cursor, dy, dx, seed, points, areas, n_max)
-        yield share, FirstDots(points[:n] / s, areas[:n] / np.float32(s * s))
+        yield share, FirstDots(points[:n], areas[:n])
 
 
-def outside_area(field: NDArray[np.float32], area: Polygon | MultiPolygon) -> None:
-    """Set what lies outside a polygon, in pixels, to exactly 0."""
-    outside_polygon(_edges(area), field)
+def _window(
+    density: NDArray[np.float32], s: int
+) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+    """Cut off what is white all around where there are many cells; return the corner and the rest.
+
+    A few black pixels on a white page ask for very fine cells, of which it takes few.
+    """
+    corner = np.zeros(2)
+    if density.size * s * s > _MANY_CELLS:
+        rows, columns = ink_box(density)
+        corner = np.array([columns.start, rows.start], np.float64)
+        density = np.ascontiguousarray(density[rows, columns])
+    return corner, density
+
+
+def ink_box(field: NDArray[np.float32]) -> tuple[slice, slice]:
+    """Return the rows and columns of the box around all that is not white; all, if all is."""
+    y, x = np.flatnonzero(field.any(axis=1)), np.flatnonzero(field.any(axis=0))
+    if not len(y):
+        return slice(0, field.shape[0]), slice(0, field.shape[1])
+    return slice(int(y[0]), int(y[-1]) + 1), slice(int(x[0]), int(x[-1]) + 1)
 
 
 def sizes_by_region(
@@ -179,11 +209,13 @@ def growth_orders(growth: str, reach: int) -> tuple[NDArray[np.int16], NDArray[n
 
 
 def _reach(density: NDArray[np.float32], s: int) -> int:
-    """Return how far the faintest regions have to look, in cells, within bounds."""
     asked = density[density > 0]
-    if not asked.size:
-        return 1
-    faint = max(float(asked.min()) / s**2, 1e-9)
+    return reach_for(float(asked.min()) / s**2) if asked.size else 1
+
+
+def reach_for(faintest: float) -> int:
+    """Return how far regions have to look, in cells, where the least charge is this; bounded."""
+    faint = max(faintest, 1e-9)
     need = 2.0 * math.sqrt(2.0 / (math.pi * faint))
     return int(min(max(16, 2 ** math.ceil(math.log2(need))), _REACH))
 
@@ -239,13 +271,3 @@ def _border_first(charge: NDArray[np.float32]) -> _Seeds:
         yield (begin + len(seeds)) / len(order), seeds
     if not len(order):
         yield 1.0, order
-
-
-def _edges(area: Polygon | MultiPolygon) -> NDArray[np.float64]:
-    """Return the border of a polygon as (m, 4) edges."""
-    parts = area.geoms if isinstance(area, MultiPolygon) else [area]
-    rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
-    corners = [np.asarray(ring.coords)[:, :2] for ring in rings if not ring.is_empty]
-    if not corners:
-        return np.empty((0, 4))
-    return np.concatenate([np.hstack((c[:-1], c[1:])) for c in corners])

@@ -20,6 +20,9 @@ _NO_DOTS = np.empty((0, 2))
 
 _MOST_EMPTY = 8.0  # times its area that the boxes around an area may cover
 _MOST_BOXES = 50_000
+_LEAST_SHARE = 0.02  # of boxes that is the area's; below, triangles find it
+_ROUNDS = 100
+_MORE, _TRIES = 1.02, 14  # factor of a step towards a number of dots, and how many steps
 _LEAST_STEP = 0.7  # of a spacing that is changed: a grid that misses an area would else explode
 
 
@@ -38,12 +41,16 @@ def floyd_steinberg(density: NDArray[np.float32]) -> NDArray[np.float64]:
     y = np.minimum((np.arange(rows) + 0.5) * (h / rows), h - 1).astype(np.intp)
     x = np.minimum((np.arange(columns) + 0.5) * (w / columns), w - 1).astype(np.intp)
     charge = density[np.ix_(y, x)].astype(np.float64) * ((h / rows) * (w / columns))
-    total = charge.sum()
+    total, asked = charge.sum(), density.sum(dtype=np.float64)
     if total > 0:
-        charge *= density.sum(dtype=np.float64) / total
+        charge *= asked / total
     points = np.empty((charge.size, 2))
-    n = diffuse(charge, points)
-    return _on_ink(points[:n] * (w / columns, h / rows), density)
+
+    def diffused(factor: float) -> NDArray[np.float64]:
+        n = diffuse(charge * factor, points)
+        return _on_ink(points[:n] * (w / columns, h / rows), density)
+
+    return _exactly(round(asked), 1.0, diffused, _MORE)
 
 
 def random_dots(density: NDArray[np.float32], seed: int) -> NDArray[np.float64]:
@@ -66,10 +73,11 @@ def hexagonal(density: NDArray[np.float32]) -> NDArray[np.float64]:
     inked = int(np.count_nonzero(density))
     if inked == 0 or wanted < 0.5:
         return _NO_DOTS
-    return _fitted(
-        wanted,
+    return _exactly(
+        round(wanted),
         math.sqrt(2.0 / math.sqrt(3.0) * inked / wanted),
         lambda spacing: _on_ink(_hexagons(w, h, spacing), density),
+        1.0 / _MORE,
     )
 
 
@@ -109,6 +117,8 @@ def random_in(area: Polygon | MultiPolygon, n: int, seed: int) -> NDArray[np.flo
     low, size = _boxes(area)
     ends = np.cumsum(size[:, 0] * size[:, 1])
     share = area.area / ends[-1]
+    if share < _LEAST_SHARE:
+        return _random_in_triangles(area, n, rng)
     parts: list[NDArray[np.float64]] = []
     missing = n
     while missing:
@@ -121,6 +131,27 @@ def random_in(area: Polygon | MultiPolygon, n: int, seed: int) -> NDArray[np.flo
         parts.append(some)
         missing -= len(some)
     return np.concatenate(parts) if parts else _NO_DOTS
+
+
+def _random_in_triangles(
+    area: Polygon | MultiPolygon, n: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Draw dots in an area so thin that most of any boxes around it is empty."""
+    triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(area))
+    corners = shapely.get_coordinates(shapely.get_exterior_ring(triangles)).reshape(-1, 4, 2)[:, :3]
+    ends = np.cumsum(shapely.area(triangles))
+    points = np.empty((n, 2))
+    missing = np.arange(n)
+    for _ in range(_ROUNDS):  # rounding puts dots beside an area that is hardly wider than it
+        a, b, c = corners[np.searchsorted(ends, rng.random(len(missing)) * ends[-1])].swapaxes(0, 1)
+        u, v = rng.random((2, len(missing), 1))
+        flip = u + v > 1.0
+        u, v = np.where(flip, 1.0 - u, u), np.where(flip, 1.0 - v, v)
+        points[missing] = a + u * (b - a) + v * (c - a)
+        missing = missing[~shapely.contains_xy(area, *points[missing].T)]
+        if not len(missing):
+            return points
+    raise GeometryError("is too narrow to be filled", "area", "make it wider")
 
 
 def hexagonal_in(area: Polygon | MultiPolygon, n: int) -> NDArray[np.float64]:
@@ -208,6 +239,36 @@ def _fitted(
         if abs(len(points) - wanted) < abs(len(best) - wanted):
             best = points
     return best
+
+
+def _exactly(
+    n: int, value: float, place: Callable[[float], NDArray[np.float64]], towards_more: float
+) -> NDArray[np.float64]:
+    """Find the value whose `place(value)` has least too many dots, and leave out what is too many.
+
+    `towards_more`: a factor to the value that gives more dots. Those left out lie evenly among the
+    others, in the order given.
+    """
+    best, few, many = place(value), 0.0, 0.0
+    points = best
+    for _ in range(_TRIES):
+        if len(points) >= n:
+            many = value
+            best = points if len(best) < n or len(points) < len(best) else best
+        else:
+            few = value
+        if len(best) == n:
+            return best
+        if few and many:
+            value = math.sqrt(few * many)
+        else:
+            value *= towards_more if not many else 1.0 / towards_more
+        points = place(value)
+    n_over = len(best) - n
+    if n_over <= 0:
+        return best
+    over = (np.arange(n_over) + 0.5) * (len(best) / n_over)
+    return np.delete(best, over.astype(np.intp), axis=0)
 
 
 def _hexagons(width: float, height: float, spacing: float) -> NDArray[np.float64]:

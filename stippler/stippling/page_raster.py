@@ -18,16 +18,17 @@ from stippler.drawing.reference import Reference
 from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
-from stippler.stippling.halftone import CELLS_PER_DOT
+from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
 from stippler.stippling.plan import MAX_DOTS
 from stippler.stippling.tone import DotRule, rule_for
 
 _BLEED = 3.0  # mean spacings
+_LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
 _MIN_DOTS = 500  # below this a bleed is not worth it
 _PIXELS_PER_DOT = 60  # blocks of a reference that is finer are averaged
 _MIN_PIXELS = 2_500_000
 _DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
-_MOST_CELLS = 400_000_000  # of a halftone, whose cells are as fine as its densest part asks for
+_MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
 
 
@@ -71,14 +72,16 @@ class PageRaster:
                 f"about {guess:,} dots of this size would be needed", "size range",
                 f"allow larger ones; {MAX_DOTS:,} can be drawn",
             )  # fmt: skip
-        darkness, scale = _at_resolution(reference.darkness, guess)
+        darkness, scale = at_resolution(reference.darkness, guess)
         pixel_mm = reference.pixel_mm * scale
         size_px = None
         if size_range_mm is not None:
             size_px = (size_range_mm[0] / pixel_mm, size_range_mm[1] / pixel_mm)
         bleed = 0
-        if bleeds and guess >= _MIN_DOTS and _border(darkness).any():
-            bleed = math.ceil(_BLEED * math.sqrt(darkness.size / guess))
+        spacing = math.sqrt(darkness.size / guess)
+        wide = min(darkness.shape) >= _LEAST_WIDTH * spacing
+        if bleeds and wide and guess >= _MIN_DOTS and _border(darkness).any():
+            bleed = math.ceil(_BLEED * spacing)
         border = _border(darkness) if bleed else darkness[0, :0]
         rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
         share = _share_that_fits(rule, darkness, bleed, guess)
@@ -139,6 +142,17 @@ class PageRaster:
         values = self._under(points)
         return self.rule.radius(values), self.rule.density(values)
 
+    def density_under(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the density that the rule gives where dots lie; 0 beyond the bleed."""
+        h, w = self.darkness.shape
+        mirrored = np.column_stack([
+            _mirrored(points[:, axis], float(size)) for axis, size in ((0, w), (1, h))
+        ])  # fmt: skip
+        density: NDArray[np.float64] = self.rule.density(self._under(mirrored))
+        beyond = np.abs(points - 0.5 * np.array([w, h])) > 0.5 * np.array([w, h]) + self.bleed
+        density[beyond.any(axis=1)] = 0.0
+        return density
+
     def _under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
         values = np.empty(len(points), np.float32)
         points = np.ascontiguousarray(points)
@@ -169,10 +183,18 @@ def _share_that_fits(
     rule: DotRule, darkness: NDArray[np.float32], bleed: int, n_dots: int
 ) -> float:
     """Return the share of the dots that can be drawn, where little of the page holds them all."""
-    h, w = darkness.shape
     densest = float(rule.density(np.linspace(0.0, float(darkness.max()), 257)).max())
+    rows, columns = ink_box(darkness)
+    h, w = rows.stop - rows.start, columns.stop - columns.start
     n_cells = CELLS_PER_DOT * densest * (h + 2 * bleed) * (w + 2 * bleed)
-    return float(max(_MOST_CELLS, 4 * CELLS_PER_DOT * n_dots) / max(n_cells, 1.0))
+    return float(max(_MOST_CELLS, 16 * CELLS_PER_DOT * n_dots) / max(n_cells, 1.0))
+
+
+def _mirrored(x: NDArray[np.float64], size: float) -> NDArray[np.float64]:
+    """Return where on the page the bleed's places are repeated from, along one axis."""
+    inside = np.abs(x)
+    back: NDArray[np.float64] = np.clip(size - np.abs(size - inside), 0.0, size)
+    return back
 
 
 def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -189,7 +211,7 @@ def _number_for(reference: Reference, size_range_mm: tuple[float, float] | None)
     return max(1, int(ink * reference.width_mm * reference.height_mm / mean_area))
 
 
-def _at_resolution(darkness: NDArray[np.float32], n_dots: int) -> tuple[NDArray[np.float32], float]:
+def at_resolution(darkness: NDArray[np.float32], n_dots: int) -> tuple[NDArray[np.float32], float]:
     """Average blocks of a picture finer than its dots can show; divide pixels larger than dots.
 
     Returns the field and the side of its pixels in those of the picture.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stippler.kernels.cells.close_pairs import find_close, push_apart
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.edge_ink import even_rim as even_along
+from stippler.stippling.compartments import Compartments
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.radii import solve_radii, sorted_by_place
 
@@ -22,7 +23,10 @@ _NEAR = 1.6  # radii; dots so near the edge may come to touch it
 
 
 def part_close(
-    points: NDArray[np.float64], raster: PageRaster, awake: NDArray[np.bool_] | None = None
+    points: NDArray[np.float64],
+    raster: PageRaster,
+    awake: NDArray[np.bool_] | None = None,
+    within: tuple[Compartments, NDArray[np.int32]] | None = None,
 ) -> NDArray[np.float64]:
     """Push dots apart that lie closer than half as far as their seventh neighbours.
 
@@ -35,6 +39,8 @@ def part_close(
         Not modified.
     awake : (n,) bool, optional
         Look only at these and their nearest; None: at all.
+    within : Compartments and (n,) int32, optional
+        In pixels, and the compartment of each dot: none leaves its own.
     """
     n = len(points)
     points = np.array(points)
@@ -48,9 +54,13 @@ def part_close(
     up = np.ones(n, bool) if awake is None else awake[order]
     nearest, lack, moves = np.zeros(n, np.int32), np.empty(n), np.empty((n, 2))
     for _ in range(_ROUNDS):
+        before = xy.copy() if within else xy
         parallel_for(find_close, n, xy, cell_start, frame, _APART, enough, up, nearest, lack)
         if not push_apart(xy, nearest, lack, raster.darkness, rim, moves, up):
             break
+        if within:
+            out = ~within[0].contain(xy, within[1][order])
+            xy[out], up[out] = before[out], False
     points[order] = xy
     return points
 
@@ -95,7 +105,7 @@ def even_rim(points: NDArray[np.float64], raster: PageRaster, give: float) -> ND
         which, inwards = band[near], inwards[near]
         asked = np.concatenate(([0.0], np.cumsum(edge, dtype=np.float64)))
         even_along(points[which, 1 - axis], inwards, radii[near], asked, line, give)
-        inwards = np.maximum(inwards, 1e-9 * size)
+        inwards = np.clip(inwards, 1e-9 * size, (1.0 - 1e-9) * size)
         points[which, axis] = size - inwards if far else inwards
     return points
 

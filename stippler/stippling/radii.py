@@ -19,6 +19,7 @@ from stippler.kernels.tone.radii import (
     pass_on,
     sum_room,
 )
+from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import DotRule
 
 _DOTS_AT_ONCE = 8_000
@@ -26,6 +27,7 @@ _ROUNDS = 4  # of passing on ink that a dot cannot lay down
 _ENOUGH = 2e-4  # share of all ink that need not be passed on
 _GAIN = 0.11  # share of the oddity of its size that a dot hands to each neighbour
 _CONTRAST = 0.7  # between cells whose tones differ by so much no ink goes
+_MOST_SIDES = 255  # of a cell whose sides are looked at
 _REACH = 7.0  # mean spacings; a cell reaches no farther from its dot to any side
 
 
@@ -34,6 +36,7 @@ def solve_radii(
     darkness: NDArray[np.float32],
     rule: DotRule,
     n_dots: int | None = None,
+    tessellation: Tessellation | None = None,
 ) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Find radii at which the union of the discs meets the darkness.
 
@@ -48,6 +51,9 @@ def solve_radii(
         Its range of radii, in pixels.
     n_dots : int, optional
         How many dots there are, where `points` are only those of a part of the page.
+    tessellation : Tessellation, optional
+        The dots' cells in their compartments, in pixels, with the ink they ask for as `mass`: for
+        areas and patterns. Else the cells are those of the page, and ask for what it is dark.
 
     Yields
     ------
@@ -66,10 +72,15 @@ def solve_radii(
         yield 1.0, result
         return
     low, high = rule.radius_min, rule.radius_max
-    order, cell_start, frame = sorted_by_place(points, darkness, n_dots or n)
-    cells = _Cells(n)
-    for share in cells.build(points[order], cell_start, frame, darkness):
-        yield 0.8 * share, result
+    if tessellation is not None:
+        order = np.arange(n, dtype=np.int32)
+        cells = _Cells(n, min(int(tessellation.n_sides.max()) + 8, _MOST_SIDES))
+        cells.read(tessellation)
+    else:
+        order, cell_start, frame = sorted_by_place(points, darkness, n_dots or n)
+        cells = _Cells(n, MAX_CORNERS)
+        for share in cells.build(points[order], cell_start, frame, darkness):
+            yield 0.8 * share, result
     yield 0.8, result
     cells.fit(low, high)
     if low < high:
@@ -89,12 +100,51 @@ def solve_radii(
 class _Cells:
     """The cells of sorted dots, and the ink that each asks for."""
 
-    def __init__(self, n: int) -> None:
-        self.corners = np.empty((n, MAX_CORNERS, 2), np.float32)
-        self.beyond = np.empty((n, MAX_CORNERS), np.int32)
+    def __init__(self, n: int, most_sides: int) -> None:
+        self.corners = np.empty((n, most_sides, 2), np.float32)
+        self.beyond = np.empty((n, most_sides), np.int32)
         self.n_corners = np.empty(n, np.uint8)
         self.asked, self.before = np.empty(n), np.full(n, -1.0)
         self.radii, self.left = np.empty(n), np.empty(n)
+
+    def read(self, cells: Tessellation) -> None:
+        """Take over the cells of a tessellation; one of very many sides is solved as a free disc.
+
+        Rings are joined into one: there and back between their first corners, which cancels out.
+        """
+        n_sides, dot = cells.n_sides.astype(np.int64), cells.dot_of_side
+        closes = np.flatnonzero(cells.following <= np.arange(len(dot)))
+        is_inner = cells.following[closes] > cells.start[dot[closes]]
+        has_rings = np.zeros(len(cells), np.bool_)
+        has_rings[dot[closes[is_inner]]] = True
+        fits = (n_sides <= self.corners.shape[1]) & (n_sides <= _MOST_SIDES) & ~has_rings
+        self.n_corners[:] = np.where(fits, n_sides, 0)
+        side = np.flatnonzero(fits[dot])
+        place = side - cells.start[dot[side]]
+        self.corners[dot[side], place] = cells.corner[side]
+        self.beyond[dot[side], place] = np.maximum(cells.beyond[side], -1)
+        for i in np.flatnonzero(has_rings):
+            self._join_rings(cells, int(i))
+        self.asked = np.array(cells.mass)
+
+    def _join_rings(self, cells: Tessellation, i: int) -> None:
+        corner: list[NDArray[np.float64]] = []
+        beyond: list[int] = []
+        first, start, stop = 0, int(cells.start[i]), int(cells.start[i + 1])
+        for k in range(start, stop):
+            corner.append(cells.corner[k])
+            beyond.append(max(int(cells.beyond[k]), -1))
+            if cells.following[k] <= k:
+                corner.append(cells.corner[cells.following[k]])
+                beyond.append(-1)
+                if first:
+                    corner.append(cells.corner[start])
+                    beyond.append(-1)
+                first = k
+        if len(corner) <= self.corners.shape[1]:
+            self.corners[i, : len(corner)] = corner
+            self.beyond[i, : len(corner)] = beyond
+            self.n_corners[i] = len(corner)
 
     def build(
         self,
@@ -164,8 +214,8 @@ def sorted_by_place(
     inked = max(float(np.count_nonzero(darkness[::4, ::4])) * 16.0, 0.05 * h * w)
     side = max(math.sqrt(1.2 * min(inked, h * w) / n), max(h, w) / 30_000)
     columns, rows = max(1, math.ceil(w / side)), max(1, math.ceil(h / side))
-    column = np.minimum((points[:, 0] / side).astype(np.int32), columns - 1)
-    row = np.minimum((points[:, 1] / side).astype(np.int32), rows - 1)
+    column = np.clip((points[:, 0] / side).astype(np.int32), 0, columns - 1)
+    row = np.clip((points[:, 1] / side).astype(np.int32), 0, rows - 1)
     cell_start = np.zeros(columns * rows + 1, np.int32)
     order = np.empty(len(points), np.int32)
     sort_by_grid_cell(row * np.int32(columns) + column, cell_start, order)

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing.style import SPACINGS
 from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.cells import Cells
+from stippler.stippling.cells import Cells, Redirect
+from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
+from stippler.stippling.spacing import Rules, Wanted, rules_after
 from stippler.stippling.tessellation import Tessellation
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 
-METHODS = ("lloyd", "delaunay-mean", "springs")
+AT_REST = 0.005
+"""Largest move of a step, in mean spacings, at which dots spaced by the rules have come to rest."""
 
 Cancel = Callable[[], bool] | threading.Event | None
 
@@ -41,7 +43,8 @@ class RunReport:
 
     Attributes
     ----------
-    reason : {"iterations", "tolerance", "cancelled"}
+    reason : {"iterations", "tolerance", "rest", "cancelled"}
+        At rest are dots spaced evenly once hardly any moves.
     """
 
     reason: str
@@ -72,8 +75,13 @@ class Relaxation:
         no mass keeps its place.
     over_relaxation : float
         The share of the way to the centroid that a dot goes, above 0 and below 2.
-    method : {"lloyd", "delaunay-mean", "springs"}
-        The other two are the paper's comparisons.
+    method : {"lloyd", "even", "delaunay-mean", "springs"}
+        "even" spaces dots by rules that leave no rows and come to rest, in proportion to the
+        density; the last two are the paper's comparisons.
+    wanted : Wanted, optional
+        How dense and how large "even" has dots to be by levels of the density.
+    radius_mm : (n,) array_like, optional
+        The dots' own sizes, by which "even" spaces them then.
 
     Raises
     ------
@@ -97,10 +105,12 @@ class Relaxation:
         over_relaxation: float = 1.0,
         *,
         method: str = "lloyd",
+        wanted: Wanted | None = None,
+        radius_mm: ArrayLike | None = None,
     ) -> None:
-        if method not in METHODS:
+        if method not in SPACINGS:
             raise ParameterError(
-                f"{method!r} is not known", "method", f"give one of {', '.join(METHODS)}"
+                f"{method!r} is not known", "method", f"give one of {', '.join(SPACINGS)}"
             )
         self._method = method
         xy = _checked_points(points)
@@ -116,9 +126,17 @@ class Relaxation:
         if compartment_of_dot is not None:
             shape_of_dot = _checked(compartment_of_dot, n, np.int32, "compartment_of_dot", 0)
         found = self._parts.find(xy, shape_of_dot)
-        self._part_coinciding(xy, found)
+        part_coinciding(xy, found, self._parts, self._fixed)
         self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
+        self._rules: Rules | None = None
+        self._n_done = 0
+        if method == "even":
+            if wanted is None:
+                values = None if density is None else density.values
+                wanted = Wanted.uniform() if values is None else Wanted.in_proportion(values)
+            own = None if radius_mm is None else _checked(radius_mm, n, np.float64, "radius", 0)
+            self._cells.space_by(wanted, own)
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -130,20 +148,33 @@ class Relaxation:
     def __len__(self) -> int:
         return self._cells.n
 
+    def set_rules(self, rules: Rules) -> None:
+        """Change how strictly the next steps of "even" space dots; they loosen no more by then."""
+        self._rules = rules
+
     @property
     def n_failed(self) -> int:
         """How many cells the last step could not carry over from the one before."""
         return self._cells.n_failed
 
-    def step(self, cancel: Cancel = None) -> StepReport:
+    def step(self, cancel: Cancel = None, redirect: Redirect | None = None) -> StepReport:
         """Move every free dot once.
+
+        Parameters
+        ----------
+        cancel : callable or threading.Event, optional
+        redirect : callable, optional
+            Called with where dots are and where the step would take them, (n, 2) mm each, in the
+            order given, once all centroids are known; returns where they shall go instead. Fixed
+            dots stay; so does one that would be sent out of its compartment. By Lloyd's method
+            only.
 
         Returns
         -------
         StepReport
             Zeros if `cancel` came before the end; then nothing has moved.
         """
-        report = self._step(_as_question(cancel))
+        report = self._step(_as_question(cancel), redirect)
         return report or StepReport(0.0, 0.0, 0)
 
     def run(
@@ -152,6 +183,7 @@ class Relaxation:
         tolerance_mm: float = 0.0,
         cancel: Cancel = None,
         progress: Callable[[int, StepReport], None] | None = None,
+        redirect: Redirect | None = None,
     ) -> RunReport:
         """Take steps until enough, until dots move less than a tolerance, or until cancelled.
 
@@ -164,11 +196,13 @@ class Relaxation:
             Asked many times a step; the step under way is dropped.
         progress : callable, optional
             Called after each step with the number of steps done and the step's report.
+        redirect : callable, optional
+            As for `step`.
         """
         asked = _as_question(cancel)
         steps: list[StepReport] = []
         for i in range(iterations):
-            report = self._step(asked)
+            report = self._step(asked, redirect)
             if report is None:
                 return RunReport("cancelled", tuple(steps))
             steps.append(report)
@@ -176,6 +210,8 @@ class Relaxation:
                 progress(i + 1, report)
             if tolerance_mm > 0.0 and report.largest_mm <= tolerance_mm:
                 return RunReport("tolerance", tuple(steps))
+            if self._method == "even" and report.largest_mm <= AT_REST * self._cells.spacing:
+                return RunReport("rest", tuple(steps))
         return RunReport("iterations", tuple(steps))
 
     def cell_areas(self) -> NDArray[np.float64]:
@@ -198,12 +234,17 @@ class Relaxation:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""
         return float(self._cells.measure(weighted=False)[:, 4].sum())
 
-    def _step(self, cancel: Callable[[], bool] | None) -> StepReport | None:
-        if self._method != "lloyd":
+    def _step(
+        self, cancel: Callable[[], bool] | None, redirect: Redirect | None = None
+    ) -> StepReport | None:
+        if self._method not in ("lloyd", "even"):
             return self._step_by_neighbours()
-        gone = self._cells.step(cancel)
+        if self._method == "even":
+            self._cells.set_rules(self._rules or rules_after(self._n_done))
+        gone = self._cells.step(cancel, redirect)
         if gone is None:
             return None
+        self._n_done += 1
         n_free = len(self) - int(np.count_nonzero(self._fixed))
         if not n_free:
             return StepReport(0.0, 0.0, 0)
@@ -226,41 +267,6 @@ class Relaxation:
             float(gone.max(initial=0.0)),
             int(np.count_nonzero(gone)),
         )
-
-    def _part_coinciding(
-        self, xy: NDArray[np.float64], compartment_of_dot: NDArray[np.int32]
-    ) -> None:
-        """Move dots off dots that were given before them at the same place, by very little."""
-        x = np.sort(xy[:, 0])
-        if (x[1:] > x[:-1]).all():
-            return
-        order = np.lexsort((xy[:, 1], xy[:, 0], compartment_of_dot))  # stable: as given in groups
-        same = (xy[order[1:]] == xy[order[:-1]]).all(axis=1)
-        same &= compartment_of_dot[order[1:]] == compartment_of_dot[order[:-1]]
-        group = np.concatenate([[0], np.cumsum(~same)])
-        sizes = np.bincount(group)
-        ends = np.cumsum(sizes)
-        for g in np.flatnonzero(sizes > 1):
-            rows = order[ends[g] - sizes[g] : ends[g]]
-            c = compartment_of_dot[rows[0]]
-            area = self._parts.area[c]
-            spacing = math.sqrt(area / np.count_nonzero(compartment_of_dot == c))
-            free = rows[~self._fixed[rows]]
-            for k, i in enumerate(free if len(free) < len(rows) else free[1:], start=1):
-                xy[i] = self._place_beside(xy[i], int(c), k, 1e-3 * spacing)
-
-    def _place_beside(
-        self, at: NDArray[np.float64], c: int, k: int, distance: float
-    ) -> NDArray[np.float64]:
-        polygon = self._parts.polygons[c]
-        shapely.prepare(polygon)
-        for attempt in range(64):
-            angle = 2.399963229728653 * (k + attempt)
-            radius = distance * math.sqrt(k) / (1 + attempt // 8) ** 2
-            there = at + radius * np.array([math.cos(angle), math.sin(angle)])
-            if shapely.contains_xy(polygon, there[0], there[1]):
-                return there
-        return at
 
 
 def relax(
@@ -289,8 +295,9 @@ def relax(
     density : (h, w) array_like, callable or DensityField, optional
         Weight: an array over the polygon's bounding box, row 0 at its least y, or a function
         of arrays x and y.
-    method : {"lloyd", "delaunay-mean", "springs"}
-        The other two are for comparison: they know no border and no density.
+    method : {"lloyd", "even", "delaunay-mean", "springs"}
+        "even" leaves no rows and comes to rest; dots are as dense as the density says. The last
+        two are for comparison: they know no border and no density.
     compartment_of_dot, tolerance_mm, over_relaxation
         See `Relaxation`.
 

@@ -13,14 +13,15 @@ from stippler.kernels.cells.tables import Dots, Grid, Moves, Stars
 from stippler.kernels.dots.bucket_grid import find_in_circle, place_dots
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
-from stippler.stippling.cells import CORNER_CAP, NO_OUTLINES
+from stippler.stippling.cells import CORNER_CAP, LLOYD, NO_OUTLINES
+from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
 
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
-_NO_CELLS = np.empty((0, 5))
+_NO_CELLS = np.empty((0, 6))
 _NO_NODES = np.empty((0, 4))
 
 
@@ -33,6 +34,8 @@ class LocalRelaxation:
     ----------
     points, polygon, compartment_of_dot, density
         As for `stippler.stippling.relax.Relaxation`.
+    movable : (n,) array_like of bool, optional
+        Dots that may be parted from others at the same place; all if left out.
 
     Notes
     -----
@@ -45,10 +48,13 @@ class LocalRelaxation:
         polygon: Shape | Sequence[Shape] | ArrayLike,
         compartment_of_dot: ArrayLike | None = None,
         density: DensityField | None = None,
+        movable: ArrayLike | None = None,
     ) -> None:
         xy = np.array(points, np.float64).reshape(-1, 2)
         self._parts = Compartments.of(polygon)
         self._compartment = self._find(xy, compartment_of_dot)
+        fixed = np.zeros(len(xy), np.bool_) if movable is None else ~np.asarray(movable, np.bool_)
+        part_coinciding(xy, self._compartment, self._parts, fixed)
         self._slot_of_dot = np.full(len(xy), -1, np.int32)
         self._field = running_sums(density)
         self._build(np.arange(len(xy), dtype=np.int32), xy)
@@ -101,12 +107,22 @@ class LocalRelaxation:
             )
         return self.positions(chosen)
 
+    def look(
+        self, dots: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return where a step would take dots, the areas of their cells and how far these reach.
+
+        Nothing moves. In mm, mm² and mm; (k, 2), (k,) and (k,).
+        """
+        slots = self._slot_of_dot[np.asarray(dots, np.int32)]
+        cells = np.zeros((len(self._moves.x), 6))
+        self._compute(slots, cells)
+        there = np.column_stack([self._moves.x[slots], self._moves.y[slots]])
+        return there, np.array(cells[slots, 3]), np.sqrt(cells[slots, 5])
+
     def cell_areas(self, dots: ArrayLike) -> NDArray[np.float64]:
         """Return the areas of the cells of dots, (k,), mm²."""
-        slots = self._slot_of_dot[np.asarray(dots, np.int32)]
-        cells = np.zeros((len(self._moves.x), 5))
-        self._compute(slots, cells)
-        return np.array(cells[slots, 0])
+        return self.look(dots)[1]
 
     def move(self, dots: ArrayLike, points: ArrayLike) -> None:
         """Put dots somewhere else, within a compartment.
@@ -149,12 +165,12 @@ class LocalRelaxation:
         return self._parts.find(xy, owner)
 
     def _compute(self, slots: NDArray[np.int32], cells: NDArray[np.float64] = _NO_CELLS) -> None:
-        """Compute cells and where they take their dots; measure them by area if there is room."""
-        field, cap = running_sums(None) if len(cells) else self._field, CORNER_CAP
+        """Compute cells and where they take their dots; measure them if there is room."""
+        field, cap = self._field, CORNER_CAP
         while len(slots):
             parallel_for(
                 relax_dots, len(slots), cap, slots, False, self._dots, self._table,
-                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, NO_OUTLINES,
+                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, NO_OUTLINES, LLOYD,
                 grain=128, chunks=2,
             )  # fmt: skip
             slots = slots[self._moves.kind[slots] == TOO_MANY_CORNERS]

@@ -3,30 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.drawing import Page
 from stippler.drawing.reference import Reference
-from stippler.stippling.compartments import polygon_of
-from stippler.stippling.halftone import DROPPED, outside_area, sizes_by_region
+from stippler.kernels.tone.union_share import shares_of_union
+from stippler.stippling.halftone import DROPPED, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
+from stippler.stippling.halftone_area import pulses_inside
 from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.postprocess import at_edge, even_rim, part_close
 from stippler.stippling.radii import solve_radii
+from stippler.stippling.run_relaxation import relaxed
 from stippler.stippling.tone import Shortfall, shortfall
 
-if TYPE_CHECKING:
-    from stippler.stippling.density import DensityField
-
-_LAST_STEPS = 5  # weighted by the darkness itself
+_TRIES = 6  # to meet the number of dots asked for
+_NOTED, _BANDS = 0.03, 10  # tone that may lack without a note, in so many bands of darkness
 _GIVES = (0.6, 0.3, 0.2, 0.1)  # how far a dot may move across the page's edge, in its radius
 
 
@@ -74,6 +73,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     Progress
         The last one has the stage "done".
     """
+    Page(reference.width_mm, reference.height_mm)  # too high a page is refused before the work
     raster = raster_for(reference, plan)
     if plan.sizes == "regions":
         yield from _stages_by_region(raster, plan, snapshots)
@@ -94,7 +94,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     for share, points in _first_dots(raster, plan):
         yield snapshot("first dots", round(1000 * share), 1000, points)
     if len(points) and plan.iterations:
-        for k, (moved, movement_mm) in enumerate(_relax(raster, plan, points)):
+        for k, (moved, movement_mm) in enumerate(
+            relaxed(raster, plan, points, raster.outline_mm())
+        ):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
     points = raster.trim(points, plan.n_asked)
@@ -129,14 +131,43 @@ def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterat
         points, radii = first.position_px[keep], radii[keep]
         yield snapshot("first dots", round(1000 * share), 1000, points, radii)
     if len(points) and plan.iterations:
-        for k, (moved, movement_mm) in enumerate(_relax(raster, plan, points)):
+        for k, (moved, movement_mm) in enumerate(
+            relaxed(raster, plan, points, raster.outline_mm())
+        ):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
     points = raster.onto_ink(raster.trim(points, None))
     notes = shortfall(
         raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked
     ).notes
+    notes += _off_the_tone(raster, points, radii)
     yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=Shortfall(notes=notes))
+
+
+def _off_the_tone(
+    raster: PageRaster, points: NDArray[np.float64], radii: NDArray[np.float64]
+) -> tuple[str, ...]:
+    """Say how far the ink of dots whose sizes were not solved is off the picture's, at worst.
+
+    Tones are compared in ten bands of darkness; those that hardly occur are not.
+    """
+    shares = shares_of_union(np.column_stack((points, radii)).astype(np.float32))
+    ink = math.pi * shares * np.square(radii)
+    band = np.minimum((raster.darkness * _BANDS).astype(np.intp), _BANDS - 1).ravel()
+    n_pixels = np.bincount(band, minlength=_BANDS)
+    asked = np.bincount(band, raster.darkness.ravel(), _BANDS)
+    x, y = np.minimum(points.astype(np.intp), np.array(raster.darkness.shape[::-1]) - 1).T
+    laid = np.bincount(band[y * raster.darkness.shape[1] + x], ink, _BANDS)
+    many = n_pixels >= _NOTED * band.size
+    tones = np.stack((asked, laid)) / np.maximum(n_pixels, 1) * many
+    worst = int(np.argmax(np.abs(tones[1] - tones[0])))
+    wanted, drawn = tones[:, worst]
+    if abs(drawn - wanted) < _NOTED:
+        return ()
+    return (
+        f"sizes by region draw a darkness of {100 * wanted:.0f} % as {100 * drawn:.0f} %; "
+        "sizes by tone meet it",
+    )
 
 
 def notes_on(result: Progress) -> tuple[str, ...]:
@@ -172,7 +203,7 @@ def pulse_density(
     ----------
     darkness : (h, w) float32, 0..1
     dots : int
-        How many; met within 1 %.
+        How many.
     growth : {"circular", "triangular"}
     start : {"top", "border"}
     seed : int
@@ -188,32 +219,11 @@ def pulse_density(
     plan = Plan(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
     reference = Reference(darkness, float(darkness.shape[1]))
     if area is not None:
-        return _pulses_inside(reference, plan, area)
+        return pulses_inside(reference.darkness, plan, area)
     raster = raster_for(reference, plan)
     *_, (_, points) = _first_dots(raster, plan)
     points = raster.onto_ink(raster.trim(points, None))
     return points * raster.pixel_mm, raster.radii(points) * raster.pixel_mm
-
-
-def _pulses_inside(
-    reference: Reference, plan: Plan, area: Polygon | MultiPolygon
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Place the number of dots that the plan asks for in an area of the reference alone."""
-    polygon_of(area, "area")
-    field = np.array(reference.darkness)
-    outside_area(field, area)
-    if not field.any():
-        return np.empty((0, 2)), np.empty(0)
-    raster = raster_for(
-        Reference(field, reference.width_mm), plan
-    )  # so sized that n dots fill the area
-    whole = replace(raster_for(reference, plan), rule=raster.rule)
-    inside = affinity.scale(area, 1 / whole.pixel_mm, 1 / whole.pixel_mm, origin=(0.0, 0.0))
-    *_, (_, first) = pulses(
-        whole.density(), plan.growth, start=plan.start, seed=plan.seed, inside=inside
-    )
-    points = first.position_px
-    return points * whole.pixel_mm, whole.radii(points) * whole.pixel_mm
 
 
 def raster_for(reference: Reference, plan: Plan) -> PageRaster:
@@ -237,56 +247,30 @@ def _first_dots(raster: PageRaster, plan: Plan) -> Iterator[tuple[float, NDArray
         for share, first in halftone:
             yield share, first.position_px - raster.bleed
         return
-    if plan.first_dots == "floyd-steinberg":
-        points = floyd_steinberg(density)
-    elif plan.first_dots == "random":
-        points = random_dots(density, plan.seed)
-    else:
-        points = hexagonal(density)
-    yield 1.0, points - raster.bleed
+    if plan.first_dots == "random":
+        yield 1.0, random_dots(density, plan.seed) - raster.bleed
+        return
+    place = floyd_steinberg if plan.first_dots == "floyd-steinberg" else hexagonal
+    yield 1.0, _trimmed_to(raster, plan.n_asked, density, place)
 
 
-def _relax(
-    raster: PageRaster, plan: Plan, points: NDArray[np.float64]
-) -> Iterator[tuple[NDArray[np.float64], float]]:
-    """Run Lloyd steps on the whole raster; yield points in pixels and their mean movement in mm."""
-    from stippler.stippling.relax import Relaxation
-
-    outline = raster.outline_mm()
-    for n_steps, field in step_weights(raster, plan):
-        at = np.clip(points * raster.pixel_mm, outline[0], outline[2])
-        engine = Relaxation(at, outline, density=field)
-        for _ in range(n_steps):
-            report = engine.step()
-            points = np.asarray(engine.points) / raster.pixel_mm
-            yield points, float(report.mean_mm)
-
-
-def step_weights(
-    raster: PageRaster, plan: Plan, n_done: int = 0
-) -> Iterator[tuple[int, DensityField]]:
-    """Yield how many steps are left after those that are done, and by what they are weighted.
-
-    By the square of the density, since dots settle at its root. The last steps are weighted by
-    the darkness itself: each dot then lies in the midst of the ink that its cell asks for, and
-    fine detail is drawn where it is; its size makes up for the density that is lost, so dots of
-    one size do without. The paper's form weighs all ink alike; white weighs nothing in any form,
-    and draws no dots.
-    """
-    from stippler.stippling.density import DensityField
-
-    x, y = raster.outline_mm()[0]
-    solved = plan.weighted and plan.sizes == "tone" and raster.rule.varies
-    n_last = min(_LAST_STEPS, plan.iterations // 3) if solved else 0
-    n_first = plan.iterations - n_last - n_done
-    if n_first > 0:
-        density = raster.density()
-        weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
-        yield n_first, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
-    n_last = min(n_last, plan.iterations - n_done)
-    if n_last > 0:
-        weight = raster.with_bleed(raster.darkness)
-        yield n_last, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
+def _trimmed_to(
+    raster: PageRaster,
+    n_wanted: int | None,
+    density: NDArray[np.float32],
+    place: Callable[[NDArray[np.float32]], NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """Place dots, in rows that may lie along the edge, so that as many as asked for are left."""
+    best, off, share = np.empty((0, 2)), np.inf, 1.0
+    for _ in range(_TRIES):
+        points = place(density * np.float32(share)) - raster.bleed
+        missing = 0 if n_wanted is None else n_wanted - len(raster.trim(points, n_wanted))
+        if abs(missing) < off:
+            best, off = points, abs(missing)
+        if not missing or not len(points):
+            break
+        share *= 1.0 + missing / len(points)
+    return best
 
 
 def _finish(

@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 import stippler
-from stippler.cli import main
 from stippler.errors import OutputError
+from stippler.start import main
 
 
 @pytest.fixture

@@ -470,3 +470,36 @@ def test_the_brushs_grid_follows_every_change(seed):
         np.testing.assert_array_equal(brush.positions(ids), xy)
         near = ids[np.hypot(*(xy - [3.1, 1.1]).T) <= 0.6]
         np.testing.assert_array_equal(brush.find(3.1, 1.1, 0.6), near)
+
+
+@pytest.mark.parametrize("polygon", [box(0, 0, 10, 10), HOLED], ids=["square", "holed"])
+def test_others_may_redirect_moves(polygon):
+    """Dots bound to a line, dots sent out of the compartment, and what is left to relaxation."""
+    points = points_in(polygon, 600, 1)
+    fixed = np.arange(600) % 7 == 0
+    bound = np.arange(600) % 5 == 1
+    engine, given_back = Relaxation(points, polygon, fixed), []
+
+    def along_x(before, wanted):
+        np.testing.assert_array_equal(before, engine.points)
+        wanted[bound, 1] = points[bound, 1]
+        wanted[::5] += 1000.0
+        given_back.append(wanted)
+        return wanted
+
+    for _ in range(12):
+        before = engine.points
+        fresh = Relaxation(before, polygon, fixed)
+        fresh.step()
+        engine.step(redirect=along_x)
+        after = engine.points
+        np.testing.assert_array_equal(after[fixed], points[fixed])
+        np.testing.assert_array_equal(after[::5], points[::5])
+        assert shapely.intersects_xy(polygon, *after.T).all()
+        sent = bound & ~fixed
+        stayed = (after[sent] == before[sent]).all(axis=1)
+        np.testing.assert_array_equal(after[sent][~stayed], given_back[-1][sent][~stayed])
+        others = ~sent & (np.arange(600) % 5 != 0)
+        np.testing.assert_allclose(after[others], fresh.points[others], atol=1e-9)
+    with pytest.raises(ParameterError, match="redirect"):
+        engine.step(redirect=lambda _before, wanted: wanted[:3])

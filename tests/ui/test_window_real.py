@@ -93,7 +93,7 @@ class Desk:
         self._env.pop("STIPPLER_SCALE", None)
         self._env["STIPPLER_CONFIG_DIR"] = str(settings)
         self.process = subprocess.Popen(
-            [sys.executable, "-c", "from stippler.cli import main; main()", *arguments],
+            [sys.executable, "-c", "from stippler.start import main; main()", *arguments],
             env=self._env,
             stderr=subprocess.PIPE,
             text=True,
@@ -248,7 +248,7 @@ def test_no_display_is_one_line(picture: Path) -> None:
     env = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     for display in ("", ":987"):
         done = subprocess.run(
-            [sys.executable, "-c", "from stippler.cli import main; main()", str(picture)],
+            [sys.executable, "-c", "from stippler.start import main; main()", str(picture)],
             env={**env, "DISPLAY": display} if display else env,
             capture_output=True,
             text=True,
@@ -274,7 +274,7 @@ def test_no_opengl_is_one_line(picture: Path) -> None:
         with os.fdopen(reads) as told:
             display = f":{told.readline().strip()}"
         done = subprocess.run(
-            [sys.executable, "-c", "from stippler.cli import main; main()", str(picture)],
+            [sys.executable, "-c", "from stippler.start import main; main()", str(picture)],
             env={**os.environ, "DISPLAY": display},
             capture_output=True,
             text=True,

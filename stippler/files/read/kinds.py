@@ -69,7 +69,7 @@ def told_of(head: bytes) -> tuple[str, str] | None:
         return "is an SVG drawing, not a picture", "export it as PNG, as large as it is to be drawn"
     if head[:2] == b"\x1f\x8b":
         return "is a compressed file, not a picture", "unpack it; export an SVG as PNG"
-    if _is_table(head):
+    if is_table(head):
         return (
             "is a table of numbers, not a picture",
             "measure a table of dots by stippler stats; draw from its picture",
@@ -77,7 +77,7 @@ def told_of(head: bytes) -> tuple[str, str] | None:
     return None
 
 
-def _is_table(head: bytes) -> bool:
+def is_table(head: bytes) -> bool:
     """Return whether a file begins as a table of dots does: names or numbers by commas."""
     if b"\0" in head and head[:2] not in (b"\xff\xfe", b"\xfe\xff"):
         return False

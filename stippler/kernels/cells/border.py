@@ -55,6 +55,15 @@ def border_distance(edge: F8, near: I4, n_near: int, x: float, y: float) -> floa
     return math.sqrt(best) * (1.0 - 1e-9)
 
 
+@inline
+def reach2_of_outline(out: F8, n: int) -> float:
+    """Return the square of the largest distance of an outline's corner from the dot."""
+    best = 0.0
+    for s in range(n):
+        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
+    return best
+
+
 @inner
 def outline_within(
     m: int, border: Border, spot: Spot, ring: int, pads: Pads, n_near: int, stamp: int
@@ -83,12 +92,7 @@ def outline_within(
     for k in range(n2):
         cell2[6, k] = margin * math.hypot(cell2[2, k], cell2[3, k])
     n = outline_piece(n2, spot.x, spot.y, border, pads, n_near, stamp, margin)
-    best = 0.0
-    out = pads.out
-    for s in range(n):
-        best = max(best, out[s, 0] * out[s, 0] + out[s, 1] * out[s, 1])
-        best = max(best, out[s, 2] * out[s, 2] + out[s, 3] * out[s, 3])
-    return n, best
+    return n, reach2_of_outline(pads.out, n)
 
 
 @inline

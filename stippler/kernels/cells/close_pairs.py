@@ -145,7 +145,7 @@ def push_apart(
             x = min(max(x + moves[i, 0], 1e-9 * w), (1.0 - 1e-9) * w)
         if rim[i] < y < h - rim[i]:
             y = min(max(y + moves[i, 1], 1e-9 * h), (1.0 - 1e-9) * h)
-        if darkness[int(y), int(x)] > 0.0:
+        if darkness[min(max(int(y), 0), h - 1), min(max(int(x), 0), w - 1)] > 0.0:
             xy[i, 0] = x
             xy[i, 1] = y
     return n

@@ -20,10 +20,10 @@ USED = np.float32(-1.0)
 
 
 @kernel
-def fill_cells(density: Array, s: int, charge: Array) -> None:
-    """Spread the dots that each pixel asks for evenly over its s by s cells."""
+def fill_cells(density: Array, s: int, factor: float, charge: Array) -> None:
+    """Spread a multiple of the dots that each pixel asks for evenly over its s by s cells."""
     h, w = density.shape
-    share = np.float32(1.0 / (s * s))
+    share = np.float32(factor / (s * s))
     for y in range(h):
         for k in range(s):
             row = charge[y * s + k]

@@ -7,11 +7,12 @@ of the plane whose power to it is least), so shares add up to the area of the un
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.kernels.machine.jit import inline, kernel
+from stippler.kernels.machine.jit import bare_kernel, inline, inner, kernel
 from stippler.kernels.machine.pool import parallel_for
 
 _N_RAYS = 32
@@ -25,30 +26,57 @@ _RAYS = np.column_stack(
 )
 
 
-@kernel
-def _sort_into_cells(discs, side, x0, y0, n_x, n_y, first, order, out):
-    """Sort discs by the cell of a grid they lie in; `first` gets n_x n_y + 1 entries."""
-    n = discs.shape[0]
+_RANGE = 4.0
+"""Largest over smallest radius of the discs that share a grid."""
+
+
+class Grids(NamedTuple):
+    """Discs by size and place: one grid for each class of sizes.
+
+    Attributes
+    ----------
+    real : (m, 4) float64
+        Side of a cell, x and y of the corner, the largest radius in it.
+    whole : (m, 3) int64
+        Columns, rows, and where the grid's cells begin in `first`.
+    first : (cells + m,) int64
+        The first disc of each cell, and the end of the last one.
+    """
+
+    real: NDArray[np.float64]
+    whole: NDArray[np.int64]
+    first: NDArray[np.int64]
+
+
+@bare_kernel
+def _sort_into_cells(discs, which, grids, k, start, order, out):
+    """Sort the discs of class k by the cell they lie in; they follow those of classes before."""
+    n_x, n_y, base = grids.whole[k, 0], grids.whole[k, 1], grids.whole[k, 2]
+    n_cells = n_x * n_y
+    first = grids.first[base : base + n_cells + 1]
     first[:] = 0
-    for i in range(n):
-        first[_cell(discs[i, 0], discs[i, 1], side, x0, y0, n_x, n_y) + 1] += 1
-    for c in range(n_x * n_y):
+    for i in which:
+        first[_cell(discs[i, 0], discs[i, 1], grids, k) + 1] += 1
+    first[0] = start
+    for c in range(n_cells):
         first[c + 1] += first[c]
-    for i in range(n - 1, -1, -1):
-        c = _cell(discs[i, 0], discs[i, 1], side, x0, y0, n_x, n_y)
+    for m in range(len(which) - 1, -1, -1):
+        i = which[m]
+        c = _cell(discs[i, 0], discs[i, 1], grids, k)
         first[c + 1] -= 1
         at = first[c + 1]
         order[at] = i
         out[at, 0], out[at, 1], out[at, 2] = discs[i, 0], discs[i, 1], discs[i, 2]
-    for c in range(n_x * n_y):
+    for c in range(n_cells):
         first[c] = first[c + 1]
-    first[n_x * n_y] = n
+    first[n_cells] = start + len(which)
 
 
 @inline
-def _cell(x, y, side, x0, y0, n_x, n_y):
-    i = min(max(int((x - x0) / side), 0), n_x - 1)
-    j = min(max(int((y - y0) / side), 0), n_y - 1)
+def _cell(x, y, grids, k):
+    side, n_x = grids.real[k, 0], grids.whole[k, 0]
+    i = min(max(int((x - grids.real[k, 1]) / side), 0), n_x - 1)
+    j = min(max(int((y - grids.real[k, 2]) / side), 0), grids.whole[k, 1] - 1)
     return j * n_x + i
 
 
@@ -63,37 +91,63 @@ def _segment(h, r):
     return (math.acos(c) - c * math.sqrt(1.0 - c * c)) / math.pi
 
 
+@inline
+def _reached(x, y, r, grids, k):
+    """Return columns and rows, first to last, whose discs may meet one of radius r at (x, y)."""
+    side = grids.real[k, 0]
+    n_x, n_y = grids.whole[k, 0], grids.whole[k, 1]
+    span = math.ceil((r + grids.real[k, 3]) / side)
+    cx = min(max(int((x - grids.real[k, 1]) / side), 0), n_x - 1)
+    cy = min(max(int((y - grids.real[k, 2]) / side), 0), n_y - 1)
+    x0, x1 = max(cx - span, 0), min(cx + span, n_x - 1)
+    y0, y1 = max(cy - span, 0), min(cy + span, n_y - 1)
+    return x0, x1, y0, y1
+
+
 @kernel
-def _shares(start, stop, discs, side, x0, y0, n_x, n_y, first, order, out):
+def _shares(start, stop, discs, grids, order, out):
     rays = np.empty((2, _N_RAYS), np.float32)
     for i in range(start, stop):
-        x, y, r = discs[i, 0], discs[i, 1], discs[i, 2]
-        cx = min(max(int((x - x0) / side), 0), n_x - 1)
-        cy = min(max(int((y - y0) / side), 0), n_y - 1)
-        lost = 0.0
-        for gy in range(max(cy - 1, 0), min(cy + 2, n_y)):
-            a, b = first[gy * n_x + max(cx - 1, 0)], first[gy * n_x + min(cx + 1, n_x - 1) + 1]
-            for j in range(a, b):
+        lost = _lost_to_neighbours(i, discs, grids, order)
+        out[order[i]] = 1.0 - lost if lost <= _MANY else _kept(i, discs, grids, order, rays)
+
+
+@inline
+def _lost_to_neighbours(i, discs, grids, order):
+    """Return the sum of what each neighbour takes of a disc."""
+    x, y, r = discs[i, 0], discs[i, 1], discs[i, 2]
+    first, lost = grids.first, 0.0
+    for k in range(len(grids.real)):
+        n_x, base = grids.whole[k, 0], grids.whole[k, 2]
+        x0, x1, y0, y1 = _reached(x, y, r, grids, k)
+        for row in range(base + y0 * n_x, base + y1 * n_x + 1, n_x):
+            for j in range(first[row + x0], first[row + x1 + 1]):
                 dx, dy, s = discs[j, 0] - x, discs[j, 1] - y, discs[j, 2]
                 d2 = dx * dx + dy * dy
                 if d2 < (r + s) * (r + s) and j != i:
                     lost += _lost(d2, r, s, order[j] < order[i])
-        if lost > _MANY:
-            rays[0, :] = 0.0
-            rays[1, :] = r
-            for gy in range(max(cy - 1, 0), min(cy + 2, n_y)):
-                a, b = first[gy * n_x + max(cx - 1, 0)], first[gy * n_x + min(cx + 1, n_x - 1) + 1]
-                for j in range(a, b):
-                    dx, dy, s = discs[j, 0] - x, discs[j, 1] - y, discs[j, 2]
-                    d2 = dx * dx + dy * dy
-                    if d2 < (r + s) * (r + s) and j != i:
-                        _clip_rays(rays, dx, dy, d2, r, s, order[j] < order[i])
-            kept = 0.0
-            for m in range(_N_RAYS):
-                kept += max(rays[1, m] ** 2 - rays[0, m] ** 2, 0.0)
-            out[order[i]] = kept / (_N_RAYS * r * r)
-        else:
-            out[order[i]] = 1.0 - lost
+    return lost
+
+
+@inner
+def _kept(i, discs, grids, order, rays):
+    """Return the share of a disc that its neighbours leave together, by rays from its centre."""
+    x, y, r = discs[i, 0], discs[i, 1], discs[i, 2]
+    rays[0, :] = 0.0
+    rays[1, :] = r
+    first, kept = grids.first, 0.0
+    for k in range(len(grids.real)):
+        n_x, base = grids.whole[k, 0], grids.whole[k, 2]
+        x0, x1, y0, y1 = _reached(x, y, r, grids, k)
+        for row in range(base + y0 * n_x, base + y1 * n_x + 1, n_x):
+            for j in range(first[row + x0], first[row + x1 + 1]):
+                dx, dy, s = discs[j, 0] - x, discs[j, 1] - y, discs[j, 2]
+                d2 = dx * dx + dy * dy
+                if d2 < (r + s) * (r + s) and j != i:
+                    _clip_rays(rays, dx, dy, d2, r, s, order[j] < order[i])
+    for m in range(_N_RAYS):
+        kept += max(rays[1, m] ** 2 - rays[0, m] ** 2, 0.0)
+    return kept / (_N_RAYS * r * r)
 
 
 @inline
@@ -142,14 +196,48 @@ def shares_of_union(discs: NDArray[np.float32]) -> NDArray[np.float32]:
     out = np.ones(n, np.float32)
     if n < 2:
         return out
-    low, high = discs[:, :2].min(axis=0).astype(float), discs[:, :2].max(axis=0).astype(float)
-    side = 2.0 * float(discs[:, 2].max())
-    side = max(side, math.sqrt(float(np.prod(np.maximum(high - low, side))) / n))
-    n_x, n_y = (int(s) + 1 for s in (high - low) / side)
-    first = np.empty(n_x * n_y + 1, np.int64)
-    order = np.empty(n, np.int64)
-    by_cell = np.empty((n, 3), np.float32)
-    grid = (side, float(low[0]), float(low[1]), n_x, n_y)
-    _sort_into_cells(discs, *grid, first, order, by_cell)
-    parallel_for(_shares, n, by_cell, *grid, first, order, out, grain=2048)
+    order, by_cell = np.empty(n, np.int64), np.empty((n, 3), np.float32)
+    grids = _sorted(discs, order, by_cell)
+    parallel_for(_shares, n, by_cell, grids, order, out, grain=2048)
     return out
+
+
+def _sorted(
+    discs: NDArray[np.float32], order: NDArray[np.int64], by_cell: NDArray[np.float32]
+) -> Grids:
+    """Sort discs into a grid for each class of sizes, the largest first.
+
+    One grid for all would have cells as large as the largest disc, and all others in a few of them.
+    """
+    x, y, radius = np.ascontiguousarray(discs[:, :3].T)
+    largest = float(radius.max())
+    members = [np.arange(len(discs))]
+    if float(radius.min()) * _RANGE < largest:
+        size = np.log(np.maximum(radius, 1e-9 * largest) / largest) // -math.log(_RANGE)
+        members = [np.flatnonzero(size == k) for k in np.unique(size)]
+    low = np.array([x.min(), y.min()], np.float64)
+    extent = np.array([x.max(), y.max()], np.float64) - low
+    grids = _empty_grids([float(radius[which].max()) for which in members], members, low, extent)
+    start = 0
+    for k, which in enumerate(members):
+        _sort_into_cells(discs, which, grids, k, start, order, by_cell)
+        start += len(which)
+    return grids
+
+
+def _empty_grids(
+    largest: list[float],
+    members: list[NDArray[np.intp]],
+    low: NDArray[np.float64],
+    extent: NDArray[np.float64],
+) -> Grids:
+    """Lay out grids whose cells are no smaller than their discs, with about a disc to a cell."""
+    m = len(members)
+    real, whole, base = np.empty((m, 4)), np.empty((m, 3), np.int64), 0
+    for k, which in enumerate(members):
+        side = 2.0 * largest[k]
+        side = max(side, math.sqrt(float(np.prod(np.maximum(extent, side))) / len(which)))
+        n_x, n_y = (int(s) + 1 for s in extent / side)
+        real[k], whole[k] = (side, *low, largest[k]), (n_x, n_y, base)
+        base += n_x * n_y + 1
+    return Grids(real, whole, np.empty(base, np.int64))

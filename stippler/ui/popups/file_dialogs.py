@@ -12,9 +12,13 @@ from typing import Protocol
 from imgui_bundle import imgui
 from imgui_bundle import portable_file_dialogs as native
 
+from stippler.names import shown
 from stippler.ui.widgets import Widgets
 
-PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".gif")
+PICTURES = (
+    ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".gif", ".jp2", ".heic", ".heif",
+    ".avif",
+)  # fmt: skip
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # what the native dialogs need on Linux
 _LISTED = 400
 _WIDTH, _LIST_HEIGHT = 520.0, 240.0
@@ -175,8 +179,8 @@ class Dialogs:
         if not imgui.begin_popup_modal(title, None, POPUP)[0]:
             return
         widgets.heading(title)
-        widgets.paragraph(f"{path.name} is there already.")
-        widgets.caption(str(path.parent))
+        widgets.paragraph(f"{shown(path.name)} is there already.")
+        widgets.caption(shown(path.parent))
         replaced, cancelled = _draw_verbs(widgets, "Replace")
         if replaced or cancelled:
             self._confirm = None
@@ -229,6 +233,7 @@ def _contents(folder: Path, endings: tuple[str, ...]) -> tuple[Path, ...]:
     """Return a folder's folders, then its files with one of the endings."""
     try:
         found = [path for path in folder.iterdir() if not path.name.startswith(".")]
+        found = [path for path in found if shown(path) == str(path)]  # others cannot be typed
         folders = sorted(path for path in found if path.is_dir())
         files = sorted(path for path in found if path.suffix.lower() in endings and path.is_file())
     except OSError:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from stippler.editor.commands import Command
 from stippler.editor.messages import WARNING
 from stippler.editor.session import Session
+from stippler.names import shown
 from stippler.resources import assets
 from stippler.ui.popups.file_dialogs import Dialogs
 from stippler.ui.popups.unsaved_guard import Guard
@@ -47,7 +48,7 @@ class Filing:
 
     def open(self, path: Path) -> None:
         """Open a picture."""
-        self.guard.then(f"Opening {path.name}", lambda: self._session.open(path))
+        self.guard.then(f"Opening {shown(path.name)}", lambda: self._session.open(path))
 
     def open_recent(self, path: Path) -> None:
         """Open a picture of the list; one that is gone is taken off it."""
@@ -63,7 +64,10 @@ class Filing:
         """Return a command for each picture of the list, the last one first."""
         return [
             Command(
-                f"file.recent {path}", f"Open {path.name}", self._opener(path), detail=_short(path)
+                f"file.recent {path}",
+                f"Open {shown(path.name)}",
+                self._opener(path),
+                detail=_short(path),
             )
             for path in self._kept.recent
         ]
@@ -149,4 +153,4 @@ def _first_path(source: Source | None) -> Path:
 def _short(path: Path) -> str:
     """Return a picture's folder, from the person's home on."""
     folder, home = path.parent, Path.home()
-    return f"~/{folder.relative_to(home)}" if folder.is_relative_to(home) else str(folder)
+    return shown(f"~/{folder.relative_to(home)}" if folder.is_relative_to(home) else folder)

@@ -1,0 +1,1 @@
+"""Drawings to files, one module a kind."""

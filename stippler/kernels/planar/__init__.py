@@ -1,0 +1,1 @@
+"""Exact geometry on a grid: borders that meet, faces between them, whose place a point is."""

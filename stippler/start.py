@@ -1,0 +1,94 @@
+"""The process: what it does before the command line is imported, and how it ends.
+
+Whatever happens, at any moment, a person gets one line at most and the right exit code: 0 done,
+1 failed, 2 wrong use, 128 + n stopped by signal n.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from typing import NoReturn
+
+from stippler.stopping import Stopped, fail, stops
+
+
+def main() -> NoReturn:
+    """Run the command line and end by `SystemExit`."""
+    args = sys.argv[1:]
+    stops.begin(args[0] if args else "edit")
+    try:
+        from stippler import cli
+
+        stops.loaded = True
+        status = cli.run(args)
+        _flush_output()
+    except Stopped as stop:
+        status = _stopped(stop.number)
+    except KeyboardInterrupt:  # raised by a library on its own account
+        status = _stopped(2)
+    except BrokenPipeError:
+        status = 1  # whoever read has had enough; there is nobody to tell
+    except OSError as error:
+        status = fail(f"standard output: {error.strerror or error}", 1)
+    except Exception:
+        if not stops.number:
+            raise
+        status = _stopped(stops.number)  # what a library made of being stopped
+    finally:
+        stops.taken()
+        _give_up_output()
+    sys.exit(status)
+
+
+def _stopped(number: int) -> int:
+    stops.taken()
+    return fail(stops.line(), 128 + number)
+
+
+def program() -> NoReturn:
+    """Run `main` as a process; a render ends without taking the interpreter apart.
+
+    Numba's machine code takes half a second to be disposed of, and all files are closed by then.
+    """
+    reserve_standard_streams()
+    try:
+        main()
+    except SystemExit as stop:
+        if sys.argv[1:2] != ["render"]:
+            raise
+        os._exit(int(stop.code or 0))
+
+
+def reserve_standard_streams() -> None:
+    """Put nothing in the place of standard streams that are closed.
+
+    Else the next file that is opened, a drawing maybe, would be number 2, and get the messages.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            flags = os.O_RDONLY if number == 0 else os.O_WRONLY
+            opened = os.open(os.devnull, flags)
+            if opened != number:
+                os.dup2(opened, number)
+                os.close(opened)
+
+
+def _flush_output() -> None:
+    """Bring to the reader what was printed; an error shows here and not at the very end."""
+    if sys.stdout is not None and not sys.stdout.closed:
+        sys.stdout.flush()
+
+
+def _give_up_output() -> None:
+    """See to it that the interpreter's own last flush has nothing to complain of."""
+    for number, stream in ((1, sys.stdout), (2, sys.stderr)):
+        try:
+            if stream is not None and not stream.closed:
+                stream.flush()
+        except OSError:
+            with contextlib.suppress(OSError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), number)
