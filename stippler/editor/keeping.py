@@ -37,7 +37,7 @@ class Keeping:
         messages: Messages,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._root, self._messages, self._clock = root, messages, clock
+        self.root, self._messages, self._clock = root, messages, clock
         self._document: Document | None = None
         self._keeper: Keeper | None = None
         self._log: EditLog | None = None
@@ -60,14 +60,14 @@ class Keeping:
             What a crash had left of it; removed as soon as the drawing is kept anew.
         """
         self.close()
-        if self._root is None:
+        if self.root is None:
             return
         self._document, self._name, self._path, self._lost = document, name, path, lost
         from stippler.files.native.recovery import is_open_elsewhere
 
-        if path is not None and is_open_elsewhere(self._root, path):
+        if path is not None and is_open_elsewhere(self.root, path):
             self._messages.say(
-                f"{path.name} is open in another window, too; what is saved last replaces the other",
+                f"{path.name} is open in another window; what is saved last replaces the other",
                 WARNING,
             )
         document.follow(self._take)
@@ -112,13 +112,13 @@ class Keeping:
 
     def _begin(self) -> None:
         """Keep the drawing as it is now."""
-        if self._root is None or self._document is None:
+        if self.root is None or self._document is None:
             return
         from stippler.files.native.drawing_file import PROGRAM, members_of
         from stippler.files.native.edit_log import EditLog
         from stippler.files.native.recovery import Keeper
 
-        self._keeper = self._keeper or Keeper(self._root)
+        self._keeper = self._keeper or Keeper(self.root)
         start = self._document.drawing.snapshot()
         self._keeper.begin(lambda: members_of(start), self._name, self._path, PROGRAM)
         self._log = EditLog(self._keeper.append, self._document)

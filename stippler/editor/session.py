@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from stippler.files.native.recovery import Lost
     from stippler.jobs.worker import Update, Worker
 
+SAVE_DPI = 300.0  # no drawing depends on it
+
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 
 
@@ -137,6 +139,10 @@ class Session:
         if reference is not None:
             self.tone, self.width_mm = reference.source.tone, reference.width_mm
             self.adjustment = reference.adjustment
+            picture = reference.source
+            self._read = Source(
+                Path(picture.name or "picture"), self.tone, self.width_mm, NEUTRAL, picture.data
+            )
         self.plan = document.drawing.style_of(0)
         if lost is not None:
             self.messages.say(f"{lost.name} is as it was; save it to keep it")
@@ -284,6 +290,21 @@ class Session:
         inputs = tuple(source.path for source in (self.source, self._asked) if source)
         self.exports.start(self.document, path, dpi, inputs)
 
+    def save(self, path: Path, *, is_copy: bool = False) -> None:
+        """Write all of the drawing to a file of its own, to go on with later.
+
+        Parameters
+        ----------
+        is_copy : bool
+            Whether the drawing stays that of the file it was saved in before.
+        """
+        if self.exporting:
+            self.messages.say("the last file is still being written", WARNING)
+        elif self.document is None:
+            self.messages.say("there is no drawing to save yet", WARNING)
+        else:
+            self.exports.start(self.document, path, SAVE_DPI, is_copy=is_copy)
+
     # --- what the workers did ---------------------------------------------------------------
 
     def poll(self) -> bool:
@@ -366,7 +387,7 @@ class Session:
 
     @property
     def unsaved(self) -> bool:
-        """Whether work of a person's hand is in the drawing and not in the file last written."""
+        """Whether work of a person's hand is in the drawing and not in the file it is saved in."""
         return self.document is not None and self.exports.lack(self.document)
 
     @property

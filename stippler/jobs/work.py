@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,12 +37,19 @@ _LOOK_S = 0.1  # between two looks at a pause or a stop
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A picture and how tone is taken from it."""
+    """A picture and how tone is taken from it.
+
+    Attributes
+    ----------
+    data : bytes or None
+        The picture's file, where a drawing holds it; it is not looked for on disk then.
+    """
 
     path: Path
     tone: str
     width_mm: float
     adjustment: Adjustment = NEUTRAL
+    data: bytes | None = field(default=None, compare=False, repr=False)
 
     def is_read_as(self, other: Source | None) -> bool:
         """Whether both come from the file alike, however they are adjusted then."""
@@ -94,9 +101,7 @@ def stipple_picture(
     """
     if reference is None:
         yield Work(READ)
-        from stippler.files.read.picture import read_picture
-
-        reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+        reference = _read(source)
         yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
     reference = reference.adjusted(source.adjustment)
     if not is_warm():
@@ -108,6 +113,17 @@ def stipple_picture(
     for progress in stages(reference, plan):
         yield Work(progress.stage, progress.done, progress.total, reference, progress)
     warm_up_brushes()
+
+
+def _read(source: Source) -> Reference:
+    """Read a picture: from the drawing that holds it, or from its file."""
+    from stippler.drawing.reference import Reference
+    from stippler.files.read.picture import picture_of_bytes, read_picture
+
+    if source.data is None:
+        return read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+    picture = picture_of_bytes(source.data, source.path.name, source.tone)
+    return Reference.of(picture, source.width_mm)
 
 
 def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
