@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from stippler.kernels.machine.jit import inline, kernel
 
 
@@ -126,7 +124,7 @@ def find_folds(grid, folded) -> int:
                 min(-way * _corner(grid, j, i + 1, 1, -1), -way * _corner(grid, j + 1, i, -1, 1)),
             )
             folded[j, i] = not worst > 0.0
-            n += np.int64(folded[j, i])
+            n += 1 if folded[j, i] else 0
     return n
 
 
