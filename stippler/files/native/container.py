@@ -87,6 +87,16 @@ def _shrinks(data: bytes) -> bool:
     return len(zlib.compress(sample, 1)) < _WORTH * len(sample)
 
 
+def is_container(path: Path) -> bool:
+    """Return whether a file begins as a drawing does; False where it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(38 + len(MIME))
+    except OSError:
+        return False
+    return head[:4] == b"PK\3\4" and head[38:] == MIME.encode()
+
+
 def read_container(path: str | Path, limits: Limits = DEFAULT_LIMITS) -> dict[str, bytes]:
     """Return the members of a file, whole and as they were written.
 
