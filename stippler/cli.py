@@ -208,33 +208,33 @@ def render(
     check_output(output, dpi, [_input(file)], form)
     from stippler.opening import is_drawing
 
-    if is_drawing(file):
-        _write_again(file, output, dpi, form, _given(context))
-        return
-    plan = _plan(
-        n_dots=dots,
-        size_range_mm=_size_range(size_range),
-        iterations=iterations,
-        seed=seed,
-        first_dots=first_dots,
-        growth=growth,
-        start=start,
-        sizes=sizes,
-        spacing=spacing,
-        weighted=not unweighted,
-        pen=pen,
-    )
-    _check_page(tone, width)
-    from stippler.export import check_size
-    from stippler.progress import stages_shown
+    with at_hand(file) as at:
+        if is_drawing(at):
+            _write_again(at, output, dpi, form, _given(context))
+            return
+        plan = _plan(
+            n_dots=dots,
+            size_range_mm=_size_range(size_range),
+            iterations=iterations,
+            seed=seed,
+            first_dots=first_dots,
+            growth=growth,
+            start=start,
+            sizes=sizes,
+            spacing=spacing,
+            weighted=not unweighted,
+            pen=pen,
+        )
+        _check_page(tone, width)
+        from stippler.export import check_size
+        from stippler.progress import stages_shown
 
-    with at_hand(file) as picture:
-        check_size(output, _page_of(picture, width), dpi, form)
+        check_size(output, _page_of(at, width), dpi, form)
         with stages_shown() as show:
             from stippler.api import draw
 
             show("picture", 0, 1)
-            drawing = draw(picture, plan, tone=tone, width_mm=width, show=show)
+            drawing = draw(at, plan, tone=tone, width_mm=width, show=show)
             show("write", 0, 1)
             drawing.save(output, dpi=dpi, form=form)
             stops.written = True
