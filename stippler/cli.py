@@ -45,7 +45,11 @@ Width = Annotated[float, typer.Option(help="Page width in mm; the height follows
 Iterations = Annotated[int, typer.Option(help="Relaxation steps.")]
 Seed = Annotated[int, typer.Option(help="Same seed, same drawing.")]
 ToneOption = Annotated[
-    str, typer.Option(metavar="linear|perceptual", help="Ink for light, or for the file's numbers.")
+    str,
+    typer.Option(
+        metavar="illustration|linear|perceptual",
+        help="As an illustrator draws it, true at arm's length, or as in the file.",
+    ),
 ]
 FirstDots = Annotated[
     str,
@@ -140,7 +144,7 @@ def edit(
     width: Width = DEFAULT_WIDTH_MM,
     iterations: Iterations = 20,
     seed: Seed = 1,
-    tone: ToneOption = "linear",
+    tone: ToneOption = "illustration",
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
     start: Start = "top",
@@ -191,7 +195,7 @@ def render(
     iterations: Iterations = 20,
     seed: Seed = 1,
     dpi: Annotated[float, typer.Option(help="Pixels an inch of a .png.")] = 300.0,
-    tone: ToneOption = "linear",
+    tone: ToneOption = "illustration",
     size_range: SizeRange = None,
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
@@ -272,7 +276,7 @@ def stats(
     width: Width = DEFAULT_WIDTH_MM,
     iterations: Iterations = 20,
     seed: Seed = 1,
-    tone: ToneOption = "linear",
+    tone: ToneOption = "illustration",
     size_range: SizeRange = None,
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
