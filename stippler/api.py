@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -41,7 +41,7 @@ class Drawing(_Drawing):
     inputs: tuple[Path, ...] = ()
 
     def save(self, path: str | PathLike[str], *, dpi: float = 300.0, form: str = "") -> None:
-        """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
+        """Write the drawing; see `stippler.export.save`. A name in .stipple keeps all of it."""
         from stippler.export import save
 
         save(self, Path(path), dpi=dpi, inputs=self.inputs, form=form)
@@ -145,7 +145,7 @@ def draw(
 ) -> Drawing:
     """Carry out a plan."""
     told: list[str] = []
-    reference = Reference(_darkness(image, tone, told), width_mm)
+    reference = _reference(image, tone, width_mm, told)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
@@ -156,6 +156,27 @@ def draw(
     if isinstance(image, str | PathLike):
         drawing.inputs = (Path(image),)
     return drawing
+
+
+def open(path: str | PathLike[str]) -> Drawing:
+    """Open a drawing.
+
+    Parameters
+    ----------
+    path : path
+        A ``.stipple`` file, or a table of dots (.csv), whose page is as large as they need.
+
+    Raises
+    ------
+    DrawingFileError
+        If the drawing is damaged, or was written by a later version.
+    TableError
+        If the table cannot be read.
+    """
+    from stippler.opening import open_file
+
+    drawing = open_file(Path(path))
+    return Drawing(**{f.name: getattr(drawing, f.name) for f in fields(_Drawing)})
 
 
 def pulse_density(
@@ -233,6 +254,15 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
     from stippler.stippling.compartments import polygon_of
 
     return polygon_of(area, "area")
+
+
+def _reference(image: Any, tone: str, width_mm: float, notes: list[str]) -> Reference:
+    """Return what tone is taken from; of a file it keeps the file."""
+    if isinstance(image, str | PathLike):
+        from stippler.files.read.picture import read_picture
+
+        return read_picture(Path(image), tone=tone, width_mm=width_mm, notes=notes)
+    return Reference(_darkness(image, tone, notes), width_mm)
 
 
 def _darkness(image: Any, tone: str, notes: list[str] | None = None) -> NDArray[np.float32]:

@@ -81,9 +81,9 @@ PenOption = Annotated[
 
 def _version(shown: bool) -> None:
     if shown:
-        from stippler import __version__
+        from stippler.version import VERSION
 
-        typer.echo(f"stippler {__version__}")
+        typer.echo(f"stippler {VERSION}")
         raise typer.Exit
 
 
@@ -177,7 +177,8 @@ def edit(
 
 @app.command()
 def render(
-    file: Annotated[Path, typer.Argument(help="A picture.")],
+    context: typer.Context,
+    file: Annotated[Path, typer.Argument(help="A picture, or a drawing (.stipple, .csv).")],
     output: Annotated[
         Path,
         typer.Option("-o", "--output", help="Drawing to write: .svg, .png or .csv; - for output."),
@@ -200,11 +201,16 @@ def render(
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
-    """Turn a picture into a drawing, without a window."""
+    """Turn a picture into a drawing, or a drawing into a file of another kind, without a window."""
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
     from stippler.export import check_output
 
     check_output(output, dpi, [_input(file)], form)
+    from stippler.opening import is_drawing
+
+    if is_drawing(file):
+        _write_again(file, output, dpi, form, _given(context))
+        return
     plan = _plan(
         n_dots=dots,
         size_range_mm=_size_range(size_range),
@@ -235,6 +241,23 @@ def render(
             show("write", 1, 1)
     for note in drawing.notes:
         _note(file, note)
+
+
+def _write_again(file: Path, output: Path, dpi: float, form: str, given: set[str]) -> None:
+    """Write a drawing to a file of another kind."""
+    making = given - {"file", "output", "dpi", "form"}
+    if making:
+        raise ParameterError(
+            f"is of a picture, and {shown(file)} is a drawing already",
+            f"--{min(making).replace('_', '-')}",
+            "leave it out",
+        )
+    from stippler.api import open as open_drawing
+
+    drawing = open_drawing(file)
+    drawing.inputs = (file,)
+    drawing.save(output, dpi=dpi, form=form)
+    stops.written = True
 
 
 @app.command()

@@ -71,7 +71,7 @@ def save(
     inputs: Iterable[str | Path] = (),
     form: str = "",
 ) -> None:
-    """Write a drawing as SVG, PNG or CSV, whole or not at all.
+    """Write a drawing as SVG, PNG, CSV or a drawing of our own kind, whole or not at all.
 
     Parameters
     ----------
@@ -120,10 +120,17 @@ def _png(drawing: Drawing, dpi: float) -> Iterator[bytes]:
     return png_chunks(strips, image_size(drawing, scale), dpi)
 
 
+def _stipple(drawing: Drawing, dpi: float) -> Iterator[bytes]:
+    from stippler.files.native.drawing_file import file_bytes
+
+    yield file_bytes(drawing)
+
+
 _WRITERS: dict[str, Callable[[Drawing, float], Iterator[bytes]]] = {
     ".svg": _svg,
     ".png": _png,
     ".csv": _csv,
+    ".stipple": _stipple,
 }
 ENDINGS = tuple(_WRITERS)
 _FORMS = " or ".join(ending[1:] for ending in ENDINGS)

@@ -228,8 +228,8 @@ def test_files_that_are_no_picture(tmp_path, monkeypatch, capsys, command, name,
 
 @pytest.mark.parametrize(
     ("out", "words"),
-    [("none/out.svg", ["does not exist"]), ("out.doc", [".doc", ".svg, .png or .csv"]),
-     ("out", ["no ending"]), ("out.stipple", [".stipple"]), ("folder.svg", ["is a folder"])],
+    [("none/out.svg", ["does not exist"]), ("out.doc", [".doc", ".svg, .png, .csv or .stipple"]),
+     ("out", ["no ending"]), ("folder.svg", ["is a folder"])],
 )  # fmt: skip
 def test_outputs_that_cannot_be_written(picture, tmp_path, monkeypatch, capsys, out, words):
     (tmp_path / "folder.svg").mkdir()

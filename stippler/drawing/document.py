@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -237,7 +238,7 @@ class Document:
     def _step(self, edit: Edit | None, what: str) -> bool:
         if edit is not None:
             self._apply(edit)
-            self._tell(Entry(what))
+            self._tell(Entry(what, edit))
         return edit is not None
 
     # --- the worker's runs ------------------------------------------------------------------
@@ -367,9 +368,9 @@ class Document:
             self._replayed_step, self._replayed = self.history.open(edit.label, of_job=True), edit
         elif entry.what == ENDED and self._replayed_step is not None:
             self.history.fill(self._replayed_step, self._replayed)
-        elif entry.what in (UNDONE, REDONE):
-            step = self.history.undo if entry.what == UNDONE else self.history.redo
-            self._step(step(), entry.what)
+        elif entry.what in (UNDONE, REDONE) and edit is not None:
+            self._apply(edit)
+            self.history.go_to(entry.n_done)
         elif edit is not None:
             self._apply(edit)
             if entry.what == PART:
@@ -384,6 +385,7 @@ class Document:
         self._tell(Entry(STEP, edit, of_job))
 
     def _tell(self, entry: Entry) -> None:
+        entry = replace(entry, n_done=self.history.n_done)
         for follower in self._followers:
             follower(entry)
 
