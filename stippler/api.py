@@ -21,7 +21,7 @@ from stippler.units import DEFAULT_WIDTH_MM
 if TYPE_CHECKING:
     from shapely.geometry import MultiPolygon, Polygon
 
-Tone = Literal["linear", "perceptual"]
+Tone = Literal["illustration", "linear", "perceptual"]
 
 
 @dataclass(slots=True, eq=False)
@@ -60,7 +60,7 @@ def stipple(
     size_range: tuple[float, float] | None = None,
     iterations: int = 20,
     seed: int = 1,
-    tone: Tone = "linear",
+    tone: Tone = "illustration",
     first_dots: str = "pulse-density",
     growth: str = "circular",
     start: str = "top",
@@ -86,8 +86,9 @@ def stipple(
         Relaxation steps.
     seed : int
         Same seed, same drawing, whatever the number of threads.
-    tone : {"linear", "perceptual"}
-        Whether ink replaces the picture's light or its encoded values.
+    tone : {"illustration", "linear", "perceptual"}
+        As an illustrator would draw it, from the picture's own histogram, with deep parts just
+        open; or true at arm's length: ink replaces the picture's light; or its encoded values.
     first_dots : str
         One of `stippler.stippling.plan.FIRST_DOTS`.
     growth : {"circular", "triangular"}

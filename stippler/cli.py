@@ -45,7 +45,11 @@ Width = Annotated[float, typer.Option(help="Page width in mm; the height follows
 Iterations = Annotated[int, typer.Option(help="Relaxation steps.")]
 Seed = Annotated[int, typer.Option(help="Same seed, same drawing.")]
 ToneOption = Annotated[
-    str, typer.Option(metavar="linear|perceptual", help="Ink for light, or for the file's numbers.")
+    str,
+    typer.Option(
+        metavar="illustration|linear|perceptual",
+        help="As an illustrator draws it, true at arm's length, or as in the file.",
+    ),
 ]
 FirstDots = Annotated[
     str,
@@ -140,7 +144,7 @@ def edit(
     width: Width = DEFAULT_WIDTH_MM,
     iterations: Iterations = 20,
     seed: Seed = 1,
-    tone: ToneOption = "linear",
+    tone: ToneOption = "illustration",
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
     start: Start = "top",
@@ -191,7 +195,7 @@ def render(
     iterations: Iterations = 20,
     seed: Seed = 1,
     dpi: Annotated[float, typer.Option(help="Pixels an inch of a .png.")] = 300.0,
-    tone: ToneOption = "linear",
+    tone: ToneOption = "illustration",
     size_range: SizeRange = None,
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",
@@ -208,33 +212,33 @@ def render(
     check_output(output, dpi, [_input(file)], form)
     from stippler.opening import is_drawing
 
-    if is_drawing(file):
-        _write_again(file, output, dpi, form, _given(context))
-        return
-    plan = _plan(
-        n_dots=dots,
-        size_range_mm=_size_range(size_range),
-        iterations=iterations,
-        seed=seed,
-        first_dots=first_dots,
-        growth=growth,
-        start=start,
-        sizes=sizes,
-        spacing=spacing,
-        weighted=not unweighted,
-        pen=pen,
-    )
-    _check_page(tone, width)
-    from stippler.export import check_size
-    from stippler.progress import stages_shown
+    with at_hand(file) as at:
+        if is_drawing(at):
+            _write_again(at, output, dpi, form, _given(context))
+            return
+        plan = _plan(
+            n_dots=dots,
+            size_range_mm=_size_range(size_range),
+            iterations=iterations,
+            seed=seed,
+            first_dots=first_dots,
+            growth=growth,
+            start=start,
+            sizes=sizes,
+            spacing=spacing,
+            weighted=not unweighted,
+            pen=pen,
+        )
+        _check_page(tone, width)
+        from stippler.export import check_size
+        from stippler.progress import stages_shown
 
-    with at_hand(file) as picture:
-        check_size(output, _page_of(picture, width), dpi, form)
+        check_size(output, _page_of(at, width), dpi, form)
         with stages_shown() as show:
             from stippler.api import draw
 
             show("picture", 0, 1)
-            drawing = draw(picture, plan, tone=tone, width_mm=width, show=show)
+            drawing = draw(at, plan, tone=tone, width_mm=width, show=show)
             show("write", 0, 1)
             drawing.save(output, dpi=dpi, form=form)
             stops.written = True
@@ -272,7 +276,7 @@ def stats(
     width: Width = DEFAULT_WIDTH_MM,
     iterations: Iterations = 20,
     seed: Seed = 1,
-    tone: ToneOption = "linear",
+    tone: ToneOption = "illustration",
     size_range: SizeRange = None,
     first_dots: FirstDots = "pulse-density",
     growth: Growth = "circular",

@@ -191,7 +191,7 @@ def test_stats_of_what_cannot_be_measured(
         (["--size-range", "big"], ["size range", "MIN:MAX"]),
         (["--size-range", "0.3:0.1"], ["size range"]),
         (["--size-range", "nan:1"], ["size range"]),
-        (["--tone", "loud"], ["loud", "linear or perceptual"]),
+        (["--tone", "loud"], ["loud", "illustration, linear or perceptual"]),
         (["--first-dots", "magic"], ["magic", "pulse-density"]),
         (["--growth", "square"], ["square", "circular"]),
         (["--start", "middle"], ["middle", "border"]),
