@@ -10,7 +10,6 @@ from stippler.jobs import work
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
-    from stippler.drawing.drawing import Drawing
     from stippler.jobs.worker import Update, Worker
 
 
@@ -52,21 +51,19 @@ class Exports:
 
     def start(
         self,
-        drawing: Drawing,
+        document: Document,
         path: Path,
         dpi: float,
-        document: Document | None,
         inputs: tuple[Path, ...] = (),
     ) -> None:
-        """Write a drawing that nobody changes.
+        """Write a drawing as it is now.
 
         Parameters
         ----------
-        document : Document or None
-            None where that has other dots.
         inputs : paths
             The files that the drawing was made from, which are never written over.
         """
+        drawing = document.drawing.snapshot()
         self._request = self._worker.start(lambda: work.export_drawing(drawing, path, dpi, inputs))
         self._mark = _mark(document)
         self._messages.say(f"writing {path.name}")
@@ -100,8 +97,8 @@ class Exports:
         return True
 
 
-def _mark(document: Document | None) -> object:
+def _mark(document: Document) -> object:
     """Return what tells a state of the dots from others: the last step; None is the beginning."""
-    if document is None or document.in_run or document.in_stroke:
+    if document.in_draft or document.in_run or document.in_stroke:
         return object()  # like no other
     return document.history.undone

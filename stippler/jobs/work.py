@@ -21,9 +21,11 @@ from stippler.errors import StipplerError
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+    from shapely.geometry import MultiPolygon, Polygon
 
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
+    from stippler.stippling.fill import Filling
     from stippler.stippling.plan import Plan
     from stippler.stippling.stipple import Progress
 
@@ -63,6 +65,8 @@ class Work:
         Where a relaxation of the drawing's own dots has brought them.
     radius_mm : (n,) float32 or None
         What their radii are to be.
+    points_mm : (n, 2) float64 or None
+        Where an area is to have more dots.
     """
 
     stage: str
@@ -72,6 +76,7 @@ class Work:
     progress: Progress | None = None
     moved_mm: NDArray[np.float64] | None = None
     radius_mm: NDArray[np.float32] | None = None
+    points_mm: NDArray[np.float64] | None = None
 
 
 def stipple_picture(
@@ -153,6 +158,15 @@ def carry_on(
         yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
 
 
+def fill(outline: Polygon | MultiPolygon, values: Filling) -> Iterator[Work]:
+    """Find places for dots in an area that has no picture."""
+    yield Work("fill")
+    from stippler.stippling.initial_points import fill_area
+
+    points = fill_area(outline, values.n_dots, values.arrangement, values.seed)
+    yield Work("fill", 1, 1, points_mm=points)
+
+
 def _prepared_kernels() -> Iterator[tuple[int, int]]:
     """Compile the kernels in a process of its own; tell how many of how many are done."""
     lines: list[str] = []
@@ -197,8 +211,3 @@ def export_drawing(
 
     save(drawing, path, dpi=dpi, inputs=inputs)
     yield path
-
-
-def frozen(drawing: Drawing) -> Drawing:
-    """Copy what an export reads, so that the drawing may change meanwhile."""
-    return drawing.snapshot()
