@@ -146,8 +146,11 @@ class Session:
         self._asked = self.source  # not a picture that could not be read since
         assert self.drawing is not None
         frozen = replace(self.drawing, dots=document.begin_run("Relax all"))
+        spacing = self.plan.spacing
         self._run(
-            "running", "relax", lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
+            "running",
+            "relax",
+            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing),
         )
         self.total = iterations
 
