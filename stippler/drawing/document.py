@@ -20,8 +20,10 @@ from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE
 from stippler.drawing.partition import NOWHERE, Partition
 from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
+from stippler.drawing.reference import Reference
 from stippler.drawing.run import Run
 from stippler.drawing.store import DotStore, Rows, union
+from stippler.drawing.style import Style
 
 
 class Document:
@@ -293,13 +295,32 @@ class Document:
         """Whether dots are being made."""
         return self._draft is not None
 
-    def begin_draft(self, label: str, area: int, pen: str) -> None:
-        """Begin to make the dots of an area anew; those that it has give way at once."""
+    def begin_draft(
+        self, label: str, area: int, style: Style, reference: Reference | None = None
+    ) -> None:
+        """Begin to make the dots of an area anew; those that it has give way at once.
+
+        A draft that was being made is dropped.
+
+        Parameters
+        ----------
+        style : Style
+            What they are made with, which the area has from now on.
+        reference : Reference or None
+            What they are made from; None leaves the drawing's.
+        """
         self._no_stroke()
         self.end_run()
-        self.end_draft()
+        if self._draft is not None:
+            draft, self._draft = self._draft, None
+            self._apply(draft.finish().inverse())
         replaced = np.flatnonzero(self.dots.area == area)
-        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(pen))
+        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(style.pen))
+        i = self.drawing.areas[area].style
+        for kind, k, value in ((records.STYLE, i, style), (records.REFERENCE, 0, reference)):
+            if value is not None and value != self.drawing.get(kind, k):
+                self._draft.set(kind, k, value)
+                self._note_value(kind, k)
         self._renewed()
 
     def draft(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> None:

@@ -31,7 +31,7 @@ _LONGEST_NAME = 200
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)  # the same drawing gives the same bytes
 _PACKED_FROM = 256  # bytes; less is not worth it
 _SAMPLE = 1 << 14
-_WORTH = 0.9  # of its size is what a sample has to shrink to
+_WORTH = 0.7  # of its size is what a sample has to shrink to
 _DO = "open a backup of the drawing"
 
 Members = Mapping[str, bytes]

@@ -334,7 +334,7 @@ def _check_dots(dots: Dots, tables: Mapping[str, Mapping[int, Any]], where: str)
             if not fine.all():
                 k = int(np.flatnonzero(~fine)[0])
                 raise DrawingFileError(f"its {what}", f"{where}, dot {k}", _DO)
-    if len(np.unique(dots.id)) < len(dots):
+    if (np.diff(np.sort(dots.id)) == 0).any():
         raise DrawingFileError("an id stands twice", where, _DO)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from stippler.drawing.drawing import Drawing
 MEMBER = "thumbnail.png"
 SIDE_PX = 256
 _FINER = 4  # samples a pixel, each way
+_MOST_DOTS = 100_000  # of more a part is drawn, each with the ink of those left out
 
 
 def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
@@ -24,8 +26,9 @@ def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
     page, dots = drawing.page, drawing.dots
     scale = side_px / max(page.width_mm, page.height_mm)
     w, h = (max(round(side * scale), 1) for side in (page.width_mm, page.height_mm))
-    points = dots.position_mm * scale
-    radii = dots.radius_mm.astype(np.float64) * scale
+    every = max(len(dots) // _MOST_DOTS, 1)
+    points = dots.position_mm[::every] * scale
+    radii = dots.radius_mm[::every].astype(np.float64) * (scale * math.sqrt(every))
     small = radii * _FINER < 1.0
     ink = draw_ink(points[~small], radii[~small], (h, w), _FINER)
     at = np.floor(points[small]).astype(np.int64)
