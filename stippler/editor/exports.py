@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.editor.messages import ERROR, Messages
 from stippler.jobs import work
@@ -40,6 +41,7 @@ class Exports:
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
+        self._writing = work.Writing()
         self.n_written = 0
         self.begin_drawing()
 
@@ -47,6 +49,15 @@ class Exports:
     def busy(self) -> bool:
         """Whether a file is being written."""
         return self._request is not None
+
+    @property
+    def n_bytes(self) -> int:
+        """How much of the file has been written."""
+        return self._writing.n_bytes
+
+    def give_up(self) -> None:
+        """End the writing at its next piece; what stood there before stays."""
+        self._writing.given_up = True
 
     def begin_drawing(self, file: Path | None = None, saved: Document | None = None) -> None:
         """Take note that another drawing is open.
@@ -80,7 +91,7 @@ class Exports:
         self,
         document: Document,
         path: Path,
-        dpi: float,
+        options: Mapping[str, Any],
         inputs: tuple[Path, ...] = (),
         *,
         is_copy: bool = False,
@@ -89,13 +100,18 @@ class Exports:
 
         Parameters
         ----------
+        options : mapping
+            Of the file's format; see `stippler.export.save`.
         is_copy : bool
             Whether the drawing stays that of the file it was saved in before.
         inputs : paths
             The files that the drawing was made from, which are never written over.
         """
         drawing = document.drawing.snapshot()
-        self._request = self._worker.start(lambda: work.export_drawing(drawing, path, dpi, inputs))
+        self._writing = writing = work.Writing()
+        self._request = self._worker.start(
+            lambda: work.export_drawing(drawing, path, options, inputs, writing)
+        )
         self._mark, self._is_copy = _mark(document), is_copy
         self._messages.say(f"writing {path.name}")
 

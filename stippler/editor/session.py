@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from stippler.files.native.recovery import Lost
     from stippler.jobs.worker import Update, Worker
 
-SAVE_DPI = 300.0  # no drawing depends on it
-
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 
 
@@ -182,8 +180,9 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
+        spacing = self.plan.spacing
         request = self._worker.start(
-            lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
+            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
         )
         self._run(Relaxing(request, "relax", self.source, total=iterations))
 
@@ -288,7 +287,7 @@ class Session:
             self.messages.say("there are no dots to export", WARNING)
             return
         inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self.document, path, dpi, inputs)
+        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
 
     def save(self, path: Path, *, is_copy: bool = False) -> None:
         """Write all of the drawing to a file of its own, to go on with later.
@@ -303,7 +302,7 @@ class Session:
         elif self.document is None:
             self.messages.say("there is no drawing to save yet", WARNING)
         else:
-            self.exports.start(self.document, path, SAVE_DPI, is_copy=is_copy)
+            self.exports.start(self.document, path, {}, is_copy=is_copy)
 
     # --- what the workers did ---------------------------------------------------------------
 

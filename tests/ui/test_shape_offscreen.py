@@ -176,7 +176,7 @@ def test_a_drawing_is_made_with_a_pen_and_seen_so_meanwhile(shaping) -> None:
     shaping.host.until(lambda: session.document.in_draft and session.n_dots > 0, "dots")
     assert session.document.dots.roughness.min() > 0.5
     shaping.host.settle()
-    assert editor.canvas.scene.dots.is_rough
+    assert editor.canvas._made.scene.dots.is_rough
     session.edit_plan(iterations=n_steps)
     session.start()
     shaping.host.until(lambda: not session.busy, "the drawing")
