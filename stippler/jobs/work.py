@@ -117,29 +117,35 @@ def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
 
 
 def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Iterator[Work]:
-    """Relax the free dots of a drawing that nobody else changes, each within its area."""
+    """Relax the free dots of a drawing that nobody else changes, each within what is its area's."""
     yield Work("relax", 0, iterations)
     import numpy as np
 
+    from stippler.drawing.partition import Partition
     from stippler.stippling.density import DensityField
     from stippler.stippling.relax import Relaxation
 
     dots, reference = drawing.dots, drawing.reference
-    used, shape_of_dot = np.unique(dots.area, return_inverse=True)
+    partition = Partition(drawing.outlines())
+    # a dot that lies in another's part stays where it is
+    which = np.flatnonzero(partition.area_at(dots.position_mm) == dots.area)
+    used, shape_of_dot = np.unique(dots.area[which], return_inverse=True)
     density = None
     if weighted and reference is not None:
         # dots settle at the root of their weight
         density = DensityField(np.square(reference.darkness), reference.pixel_mm)
     engine = Relaxation(
-        dots.position_mm,
-        [drawing.areas[int(k)].outline_mm for k in used],
-        dots.fixed,
+        dots.position_mm[which],
+        [partition.part_of(int(k)) for k in used],
+        dots.fixed[which],
         shape_of_dot,
         density,
     )
     for k in range(iterations):
         engine.step()
-        yield Work("relax", k + 1, iterations, moved_mm=engine.points)
+        moved = dots.position_mm.copy()
+        moved[which] = engine.points
+        yield Work("relax", k + 1, iterations, moved_mm=moved)
 
 
 def carry_on(
