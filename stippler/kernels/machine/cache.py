@@ -13,7 +13,7 @@ from pathlib import Path
 from platformdirs import user_cache_path
 
 _KERNELS = Path(__file__).parent.parent
-_IMPORT = re.compile(r"^from stippler\.kernels\.([\w.]+) import", re.MULTILINE)
+_IMPORT = re.compile(r"^ *from stippler\.kernels\.([\w.]+) import", re.MULTILINE)
 
 
 def cache_root() -> Path:
@@ -32,9 +32,22 @@ def module_folder(source: str) -> Path:
     return cache_root() / f"{path.stem}-{_digest(_with_imports(path))}"
 
 
-def all_digest() -> str:
-    """Return a digest of all kernel sources."""
-    return _digest(_KERNELS.rglob("*.py"))
+def source_digest(source: str) -> str:
+    """Return a digest of what the kernels of one source file are made of, wherever it lies."""
+    return _content_digest(tuple(sorted(_with_imports(Path(source)))))
+
+
+def all_sources_digest() -> str:
+    """Return a digest of what all kernels are made of."""
+    return _content_digest(tuple(sorted(_KERNELS.rglob("*.py"))))
+
+
+@cache
+def _content_digest(sources: tuple[Path, ...]) -> str:
+    digest = hashlib.sha256()
+    for source in sources:
+        digest.update(f"{source.name} {_text(source)}".encode())
+    return digest.hexdigest()[:16]
 
 
 def _with_imports(path: Path) -> set[Path]:
