@@ -12,6 +12,7 @@ come from one table, `OBJECTS`, that is filled when the code is loaded.
 from __future__ import annotations
 
 import builtins
+import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -91,7 +92,7 @@ define void @NRT_MemInfo_call_dtor(ptr %info) {{
 """The table, and the room for a kernel's own arrays as numba's runtime lays it out."""
 
 
-class Unsupported(Exception):
+class UnsupportedError(Exception):
     """Code whose arguments or result no entry can be made for; numba stays in charge of it."""
 
 
@@ -112,7 +113,9 @@ class _Entry:
         return f"%v{self.n}"
 
     def load(self, pointer: str, offset: int, kind: str) -> str:
-        return self.let(f"load {kind}, ptr {self.let(f'getelementptr i8, ptr {pointer}, i64 {offset}')}")
+        return self.let(
+            f"load {kind}, ptr {self.let(f'getelementptr i8, ptr {pointer}, i64 {offset}')}"
+        )
 
     def object(self, name: str) -> str:
         return self.load(f"@{TABLE}", 8 * list(OBJECTS).index(name), "ptr")
@@ -156,12 +159,20 @@ def entry_ir(symbol: str, native: str, natives: list[str], args: Any, result: An
     failed = entry.let(f"icmp ne ptr {entry.call('PyErr_Occurred', '')}, null")
     entry.lines += [f"  br i1 {failed}, label %wrong, label %go", "go:"]
     thread = entry.call("PyEval_SaveThread", "")
-    given = ", ".join(f"{kind} {value}" for kind, value in zip(entry.natives, entry.values, strict=True))
-    status = entry.let(f"call i32 @{native}(ptr %result, ptr %raised{', ' if given else ''}{given})")
+    given = ", ".join(
+        f"{kind} {value}" for kind, value in zip(entry.natives, entry.values, strict=True)
+    )
+    status = entry.let(
+        f"call i32 @{native}(ptr %result, ptr %raised{', ' if given else ''}{given})"
+    )
     entry.call("PyEval_RestoreThread", f"ptr {thread}")
     good = entry.let(f"icmp eq i32 {status}, 0")
     none = entry.let(f"icmp eq i32 {status}, -2")
-    entry.lines += [f"  %fine = or i1 {good}, {none}", "  br i1 %fine, label %done, label %bad", "done:"]
+    entry.lines += [
+        f"  %fine = or i1 {good}, {none}",
+        "  br i1 %fine, label %done, label %bad",
+        "done:",
+    ]
     _box(entry, result)
     entry.lines.append("bad:")
     entry.call("PyErr_SetString", f"ptr {entry.object('error')}, ptr @{symbol}_words")
@@ -183,13 +194,15 @@ def entry_ir(symbol: str, native: str, natives: list[str], args: Any, result: An
 
 def _argument(entry: _Entry, value: str, kind: Any) -> None:
     """Check what is given for one argument, and take it apart."""
-    from numba.core import types
+    types: Any = importlib.import_module("numba.core.types")
 
     if isinstance(kind, types.Array):
         _array(entry, value, kind)
     elif isinstance(kind, types.BaseTuple):
         flags = entry.call("PyType_GetFlags", f"ptr {entry.load(value, _TYPE, 'ptr')}")
-        entry.demand(entry.let(f"icmp ne i64 {entry.let(f'and i64 {flags}, {_TUPLE_SUBCLASS}')}, 0"))
+        entry.demand(
+            entry.let(f"icmp ne i64 {entry.let(f'and i64 {flags}, {_TUPLE_SUBCLASS}')}, 0")
+        )
         entry.demand(entry.let(f"icmp eq i64 {entry.load(value, _SIZE, 'i64')}, {len(kind)}"))
         for k, member in enumerate(kind):
             _argument(entry, entry.load(value, _ITEMS + 8 * k, "ptr"), member)
@@ -201,11 +214,11 @@ def _argument(entry: _Entry, value: str, kind: Any) -> None:
 
 
 def _number(entry: _Entry, value: str, kind: Any) -> None:
-    from numba.core import types
+    types: Any = importlib.import_module("numba.core.types")
 
     name = "bool" if isinstance(kind, types.Boolean) else str(kind)
     if name not in NUMBERS or isinstance(kind, types.Literal):
-        raise Unsupported(str(kind))
+        raise UnsupportedError(str(kind))
     found = entry.load(value, _TYPE, "ptr")
     is_it = entry.let(f"icmp eq ptr {found}, {entry.object(f'number {name}')}")
     plain = {"int64": "int", "float64": "float", "bool": "truth"}.get(name)
@@ -225,7 +238,9 @@ def _unbox(entry: _Entry) -> None:
             entry.values[at] = entry.let(f"trunc i32 {truth} to {kind}")
         elif name.startswith("float"):
             real = entry.call("PyFloat_AsDouble", f"ptr {value}")
-            entry.values[at] = real if kind == "double" else entry.let(f"fptrunc double {real} to float")
+            entry.values[at] = (
+                real if kind == "double" else entry.let(f"fptrunc double {real} to float")
+            )
         else:
             call = "PyLong_AsUnsignedLongLong" if name == "uint64" else "PyLong_AsLongLong"
             whole = entry.call(call, f"ptr {value}")
@@ -235,7 +250,7 @@ def _unbox(entry: _Entry) -> None:
 def _array(entry: _Entry, value: str, kind: Any) -> None:
     name = str(kind.dtype)
     if name not in NUMBERS:
-        raise Unsupported(name)
+        raise UnsupportedError(name)
     found = entry.load(value, _TYPE, "ptr")
     entry.demand(entry.let(f"icmp eq ptr {found}, {entry.object('ndarray')}"))
     entry.demand(entry.let(f"icmp eq i32 {entry.load(value, _ND, 'i32')}, {kind.ndim}"))
@@ -262,7 +277,7 @@ def _row(entry: _Entry, pointer: str, n: int) -> Iterator[str]:
 
 def _box(entry: _Entry, kind: Any) -> None:
     """Make Python's object of the result."""
-    from numba.core import types
+    types: Any = importlib.import_module("numba.core.types")
 
     if isinstance(kind, types.NoneType):
         made = entry.object("none")
@@ -278,8 +293,10 @@ def _box(entry: _Entry, kind: Any) -> None:
     elif isinstance(kind, types.Integer):
         whole = entry.load("%result", 0, f"i{kind.bitwidth}")
         if kind.bitwidth < 64:
-            whole = entry.let(f"{'sext' if kind.signed else 'zext'} i{kind.bitwidth} {whole} to i64")
+            whole = entry.let(
+                f"{'sext' if kind.signed else 'zext'} i{kind.bitwidth} {whole} to i64"
+            )
         made = entry.call("PyLong_FromLongLong", f"i64 {whole}")
     else:
-        raise Unsupported(str(kind))
+        raise UnsupportedError(str(kind))
     entry.lines.append(f"  ret ptr {made}")

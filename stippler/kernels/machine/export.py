@@ -14,6 +14,7 @@ import re
 import shutil
 import subprocess
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -23,10 +24,18 @@ from typing import Any
 
 from stippler.kernels.machine import store
 from stippler.kernels.machine.cache import all_sources_digest, source_digest
-from stippler.kernels.machine.entry_ir import DECLARATIONS, RUNTIME, Unsupported, entry_ir
+from stippler.kernels.machine.entry_ir import (
+    DECLARATIONS,
+    RUNTIME,
+    TABLE,
+    UnsupportedError,
+    entry_ir,
+)
 
-_KNOWN = {*DECLARATIONS, *store.MATH, *store.MEMORY, store.TABLE, "_GLOBAL_OFFSET_TABLE_"}
+_KNOWN = {*DECLARATIONS, *store.MATH, *store.MEMORY, TABLE, "_GLOBAL_OFFSET_TABLE_"}
 _OURS = ("NRT_MemInfo_alloc_aligned", "NRT_MemInfo_call_dtor")
+_LOOK_S, _PATIENCE, _STALE_S = 0.01, 6_000, 60.0  # at what another process is making
+_OLD_S = 30 * 86_400.0  # from when on objects of other versions go
 _lock = threading.Lock()
 
 
@@ -77,10 +86,10 @@ def recorded(function: Any, options: dict[str, Any], args: tuple[Any, ...]) -> i
     symbol = f"stippler_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
     path = _recorder.folder / f"{symbol}.o"
     with _lock:
-        if not path.exists():
+        if not path.exists() and not _made_by_another(path):
             try:
                 _write(path, _compiled(function, options, kinds, symbol))
-            except Unsupported:
+            except UnsupportedError:
                 _recorder.unsupported.add((name, str(kinds)))
                 return None
         if not _recorder.has_runtime:
@@ -90,6 +99,23 @@ def recorded(function: Any, options: dict[str, Any], args: tuple[Any, ...]) -> i
         if symbol not in made["entries"]:
             made["entries"].append(symbol)
         return _engine_of(_recorder.folder)(symbol, path)
+
+
+def _made_by_another(path: Path) -> bool:
+    """Claim an object that is to be made; or wait while another process makes it."""
+    claim = path.with_suffix(".claim")
+    for _ in range(_PATIENCE):
+        try:
+            claim.touch(exist_ok=False)
+        except FileExistsError:
+            if path.exists():
+                return True
+            if time.time() - claim.stat().st_mtime > _STALE_S:
+                return False  # its maker was ended
+            time.sleep(_LOOK_S)
+        else:
+            return False
+    return False
 
 
 def save_list() -> None:
@@ -120,9 +146,10 @@ def finish(folder: Path, target: Path) -> None:
         (target / store.LIBRARY).unlink(missing_ok=True)
         for path in objects:
             shutil.copy(path, target)
-    for path in folder.glob("stippler_*.o"):
-        if path not in objects:
-            path.unlink()
+    old = time.time() - _OLD_S
+    for path in (*folder.glob("stippler_*.o"), *folder.glob("*.claim")):
+        if path not in objects and path.stat().st_mtime < old:
+            path.unlink(missing_ok=True)
     about = {"format": store.FORMAT, "sources": all_sources_digest(), "kernels": kernels}
     _write(target / store.LIST, json.dumps(about).encode())
     store.stores.cache_clear()
@@ -167,7 +194,7 @@ def _compiled(function: Any, options: dict[str, Any], kinds: tuple[Any, ...], sy
     from numba.core.compiler_lock import global_compiler_lock
     from numba.core.registry import cpu_target
 
-    flags = compiler.Flags()
+    flags: Any = compiler.Flags()
     cpu_target.options.parse_as_flags(flags, dict(options))
     flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
     with global_compiler_lock:
@@ -214,7 +241,7 @@ def _stripped(module: Any, symbol: str) -> Any:
         if value.is_declaration and not re.match(r"llvm\.", value.name)
     } - _KNOWN - set(_OURS)  # fmt: skip
     if unknown:
-        raise Unsupported(f"it calls {', '.join(sorted(unknown))}")
+        raise UnsupportedError(f"it calls {', '.join(sorted(unknown))}")
     return module
 
 

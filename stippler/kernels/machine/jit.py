@@ -63,7 +63,7 @@ class Kernel(Compiled):
         super().__init__(function, options, cached=True)
         self._call = store.stored(function, self._by_numba) or self._by_numba
 
-    def __call__(self, *args: Any) -> Any:
+    def __call__(self, *args: Any) -> Any:  # noqa: D102  # as the function's own
         return self._call(*args)
 
     @property

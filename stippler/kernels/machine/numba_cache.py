@@ -12,7 +12,7 @@ from typing import Any
 from numba.core.caching import FunctionCache
 
 
-class _LenientCache(FunctionCache):  # type: ignore[misc]
+class _LenientCache(FunctionCache):
     """A cache that never stops a program."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
