@@ -134,8 +134,9 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
+        spacing = self.plan.spacing
         request = self._worker.start(
-            lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
+            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
         )
         self._run(Relaxing(request, "relax", self.source, total=iterations))
 
@@ -240,7 +241,7 @@ class Session:
             self.messages.say("there are no dots to export", WARNING)
             return
         inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self.document, path, dpi, inputs)
+        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
 
     # --- what the workers did ---------------------------------------------------------------
 

@@ -10,10 +10,10 @@ import re
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.errors import StipplerError
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
+    from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.stippling.fill import Filling
@@ -116,36 +117,71 @@ def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
     yield Work(PREPARE, 1, 1)
 
 
-def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Iterator[Work]:
-    """Relax the free dots of a drawing that nobody else changes, each within what is its area's."""
+def relax_drawing(
+    drawing: Drawing, iterations: int, *, weighted: bool, spacing: str = "even"
+) -> Iterator[Work]:
+    """Relax the free dots of a drawing that nobody else changes, each within what its area owns.
+
+    Spaced evenly by the tone they keep it: see `stippler.stippling.relax_all`. Dots that lie in
+    another area's part stay where they are.
+    """
     yield Work("relax", 0, iterations)
     import numpy as np
 
     from stippler.drawing.partition import Partition
+
+    dots, partition = drawing.dots, Partition(drawing.outlines())
+    own = np.flatnonzero(partition.area_at(dots.position_mm) == dots.area)
+    mine = dots if len(own) == len(dots) else dots.take(own)
+    used, shape_of_dot = np.unique(mine.area, return_inverse=True)
+    parts = [partition.part_of(int(k)) for k in used]
+    run = _relaxed(mine, parts, shape_of_dot, drawing.reference, iterations, weighted, spacing)
+    for k, (moved, sizes) in enumerate(run):
+        if mine is not dots:
+            moved, sizes = _among(dots.position_mm, own, moved), _among(dots.radius_mm, own, sizes)
+        yield Work("relax", min(k + 1, iterations), iterations, moved_mm=moved, radius_mm=sizes)
+
+
+def _relaxed(
+    dots: Dots,
+    parts: list[Polygon | MultiPolygon],
+    shape_of_dot: NDArray[np.intp],
+    reference: Reference | None,
+    iterations: int,
+    weighted: bool,
+    spacing: str,
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float32] | None]]:
+    """Yield positions after each step, and radii where they change."""
+    if spacing == "even" and (weighted or reference is None):
+        from stippler.stippling.relax_all import relaxed_all
+
+        yield from relaxed_all(
+            dots.position_mm, dots.radius_mm, parts, dots.fixed, shape_of_dot, reference, iterations
+        )
+        return
+    import numpy as np
+
     from stippler.stippling.density import DensityField
     from stippler.stippling.relax import Relaxation
 
-    dots, reference = drawing.dots, drawing.reference
-    partition = Partition(drawing.outlines())
-    # a dot that lies in another's part stays where it is
-    which = np.flatnonzero(partition.area_at(dots.position_mm) == dots.area)
-    used, shape_of_dot = np.unique(dots.area[which], return_inverse=True)
     density = None
     if weighted and reference is not None:
         # dots settle at the root of their weight
         density = DensityField(np.square(reference.darkness), reference.pixel_mm)
-    engine = Relaxation(
-        dots.position_mm[which],
-        [partition.part_of(int(k)) for k in used],
-        dots.fixed[which],
-        shape_of_dot,
-        density,
-    )
-    for k in range(iterations):
+    method = "lloyd" if spacing == "even" else spacing
+    engine = Relaxation(dots.position_mm, parts, dots.fixed, shape_of_dot, density, method=method)
+    for _ in range(iterations):
         engine.step()
-        moved = dots.position_mm.copy()
-        moved[which] = engine.points
-        yield Work("relax", k + 1, iterations, moved_mm=moved)
+        yield engine.points, None
+
+
+def _among(all_: NDArray[Any], rows: NDArray[np.intp], new: NDArray[Any] | None) -> Any:
+    """Return values with those of some rows renewed; None where there are none."""
+    if new is None:
+        return None
+    out = all_.copy()
+    out[rows] = new
+    return out
 
 
 def carry_on(
@@ -209,11 +245,33 @@ def _ready(lines: list[str]) -> tuple[int, int]:
     return (int(found[1]), int(found[2])) if found else (0, 0)
 
 
+@dataclass(slots=True)
+class Writing:
+    """A file being written, for two threads: how far it is, and whether a person gave it up."""
+
+    n_bytes: int = 0
+    given_up: bool = False
+
+
 def export_drawing(
-    drawing: Drawing, path: Path, dpi: float, inputs: tuple[Path, ...] = ()
+    drawing: Drawing,
+    path: Path,
+    options: Mapping[str, Any],
+    inputs: tuple[Path, ...] = (),
+    writing: Writing | None = None,
 ) -> Iterator[Path]:
-    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there."""
+    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there.
+
+    A worker that closes lets it be finished; only `writing` gives it up, at its next piece.
+    """
     from stippler.export import save
 
-    save(drawing, path, dpi=dpi, inputs=inputs)
+    state = writing or Writing()
+
+    def show(n_bytes: int) -> None:
+        state.n_bytes = n_bytes
+        if state.given_up:
+            raise StipplerError("was given up", path.name, "nothing was written")
+
+    save(drawing, path, inputs=inputs, show=show, **options)
     yield path
