@@ -16,8 +16,9 @@ from benchmarks.figures import Figure
 from benchmarks.rendering import drawing
 from stippler.drawing.drawing import Drawing
 from stippler.export import values_for
+from stippler.files.checks import Process, check
 from stippler.files.write.formats import format_named
-from stippler.files.write.plate import plate_of
+from stippler.files.write.plate import LINE_EFFORT, plate_of
 from stippler.stippling.tour import length_of, tour
 
 _RANDOM_TOUR = 0.7124
@@ -35,7 +36,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
 def figures(quick: bool = False) -> list[Figure]:
     """Measure all; `quick` leaves out what takes minutes."""
     repeats = 3 if quick else 7
-    results = [*_formats(repeats), *_tours(repeats)]
+    results = [*_formats(repeats), *_tours(repeats), _check(repeats)]
     if not quick:
         results += _large()
     return results
@@ -97,7 +98,7 @@ def _tours(repeats: int) -> list[Figure]:
     results = []
     for points, effort, reach_s, reach, what in (
         (many, 0.0, 3.0, 1.15, "plot order of 100,000 dots"),
-        (some, 1.0, 10.0, 1.08, "one line through 60,000 dots"),
+        (some, LINE_EFFORT, 10.0, 1.08, "one line through 60,000 dots"),
     ):
         seconds = _fastest_s(lambda: tour(points, closed=True, effort=effort), max(repeats // 3, 1))  # noqa: B023
         order = tour(points, closed=True, effort=effort)
@@ -106,6 +107,13 @@ def _tours(repeats: int) -> list[Figure]:
         note = "of the constant that shortest tours of random points tend to"
         results.append(Figure(f"{what}, length", longer, "", reach, note=note))
     return results
+
+
+def _check(repeats: int) -> Figure:
+    page = drawing(200_000)
+    process = Process(dpi=1200)
+    seconds = _fastest_s(lambda: check(page, process), repeats)
+    return Figure("checks of 200,000 dots, at 1200 dpi", seconds, "s", 1.0)
 
 
 def _large() -> list[Figure]:
