@@ -12,7 +12,7 @@ from stippler.errors import ParameterError
 from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
-from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
+from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
@@ -238,7 +238,22 @@ class Cells:
     def _step_from_nothing(self, new: Moves, cancel: Question) -> bool:
         new = new._replace(kind=self._kind_of_cell, free=self._free_of_dot)
         stars = Stars(self._star, self._n_star, _NO_FLAGS)
-        return self._relax(_NO_ROWS, True, new, stars=stars, cancel=cancel)
+        done = self._relax(_NO_ROWS, True, new, stars=stars, cancel=cancel)
+        if done and not self.parts.is_convex.all():
+            self._distrust(np.ones(self.n, np.bool_))
+        return done
+
+    def _distrust(self, computed: NDArray[np.bool_]) -> None:
+        """Have cells of concave compartments computed anew in each step that others do not confirm.
+
+        Beyond a side of theirs lies what is nobody's, since a border cuts its cell apart.
+        """
+        of_dot = self.compartment_of_dot
+        rows = np.flatnonzero(computed & ~self.parts.is_convex[of_dot]).astype(np.int32)
+        todo = np.zeros(self.n, np.uint8)
+        parallel_for(check_stars, len(rows), rows, self._star, self._n_star, todo, grain=1024)
+        kind = self._kind_of_cell
+        kind[(todo != 0) & (kind == INNER)] = RIM
 
     def _step_from_stars(self, new: Moves, cancel: Question) -> bool:
         """Move dots by verified stars; False if that is not worth it now, or cancelled."""
@@ -268,6 +283,8 @@ class Cells:
             stars.suspect[:] = 0
             parallel_for(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
             which = rows[todo[rows] != 0]
+        if done and not self.parts.is_convex.all():
+            self._distrust(settled)
         return done
 
     def _sort(self, with_stars: bool = False, cancel: Question = None) -> bool:
