@@ -1,7 +1,7 @@
 """Remake the scripted sample pictures: ``python assets/make_samples.py [NAME ...]``.
 
-Without names it makes all three. Nothing is random but by fixed seeds, so the pictures come out
-the same every time.
+Without names it makes all three, and the program's icon. Nothing is random but by fixed seeds, so
+they come out the same every time.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from sources import ammonite, stone, wedge
+from sources import ammonite, icon, stone, wedge
 
 SAMPLES = Path(__file__).resolve().parent / "samples"
 
@@ -35,10 +35,16 @@ def make_wedge() -> None:
     Image.fromarray(levels).save(SAMPLES / "step-wedge.png", optimize=True)
 
 
+def make_icon() -> None:
+    """Write the program's icon."""
+    (SAMPLES.parent / "icons" / "stippler.svg").write_text(icon.draw())
+
+
 MAKERS: dict[str, Callable[[], None]] = {
     "ammonite": make_ammonite,
     "sandstone": make_sandstone,
     "step-wedge": make_wedge,
+    "icon": make_icon,
 }
 
 

@@ -65,6 +65,7 @@ def stipple(
     growth: str = "circular",
     start: str = "top",
     sizes: str = "tone",
+    spacing: str = "even",
     weighted: bool = True,
     pen: str = DEFAULT_PEN,
 ) -> Drawing:
@@ -95,6 +96,9 @@ def stipple(
         Where pulse-density modulation begins.
     sizes : {"tone", "regions"}
         Sizes that meet the tone, or the paper's: by how far pulse-density regions had to grow.
+    spacing : {"even", "lloyd", "delaunay-mean", "springs"}
+        How dots are spaced: evenly without rows, by Lloyd's relaxation alone, or by the paper's
+        comparisons.
     weighted : bool
         Relax by the tone; False is the paper's form, whose light parts fill up.
     pen : str
@@ -124,6 +128,7 @@ def stipple(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=weighted,
         pen=pen,
     )

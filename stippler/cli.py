@@ -61,6 +61,13 @@ Sizes = Annotated[
         metavar="tone|regions", help="Dot sizes solved for the tone, or the paper's by region."
     ),
 ]
+Spacing = Annotated[
+    str,
+    typer.Option(
+        metavar="METHOD",
+        help="even (no rows), or lloyd, delaunay-mean, springs, as in the paper.",
+    ),
+]
 Unweighted = Annotated[
     bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
 ]
@@ -80,10 +87,28 @@ def _version(shown: bool) -> None:
         raise typer.Exit
 
 
+def _install_desktop(wanted: bool) -> None:
+    if wanted:
+        from stippler.desktop import install
+
+        for path in install():
+            typer.echo(f"{shown(path)} is written")
+        raise typer.Exit
+
+
 @app.callback()
 def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+    install_desktop: Annotated[
+        bool,
+        typer.Option(
+            "--install-desktop",
+            callback=_install_desktop,
+            is_eager=True,
+            help="Put the program into the menus of a Linux desktop.",
+        ),
     ] = False,
 ) -> None:
     pass
@@ -120,6 +145,7 @@ def edit(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -133,6 +159,7 @@ def edit(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
@@ -169,6 +196,7 @@ def render(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
 ) -> None:
@@ -186,6 +214,7 @@ def render(
         growth=growth,
         start=start,
         sizes=sizes,
+        spacing=spacing,
         weighted=not unweighted,
         pen=pen,
     )
@@ -226,6 +255,7 @@ def stats(
     growth: Growth = "circular",
     start: Start = "top",
     sizes: Sizes = "tone",
+    spacing: Spacing = "even",
     unweighted: Unweighted = False,
 ) -> None:
     """Print the number of dots, their spacing, spectrum and tone error.
@@ -257,6 +287,7 @@ def stats(
                 growth=growth,
                 start=start,
                 sizes=sizes,
+                spacing=spacing,
                 weighted=not unweighted,
             )
             from stippler import stats as statistics
@@ -357,7 +388,7 @@ def run(args: list[str]) -> int:
     skip_blas()
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, about files; what matters is told by us
-    if not args or args[0] not in (*COMMANDS, "--help", "--version"):
+    if not args or args[0] not in (*COMMANDS, "--help", "--version", "--install-desktop"):
         args = ["edit", *args]  # `stippler photo.jpg`
     try:
         return int(app(args, prog_name="stippler", standalone_mode=False) or 0)

@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from stippler.drawing import records
 from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.dots import Dots
+from stippler.drawing.foreign import Foreign
 from stippler.drawing.page import MAX_PAGE_MM, Page
 from stippler.drawing.pens import pen_named
 from stippler.drawing.records import Record
@@ -39,6 +40,8 @@ class Drawing:
         What tone is taken from.
     next_id : dict of kind to int
         The first id of each kind that was never given; see `first_free`.
+    foreign : Foreign
+        What a later program has put into its file.
     """
 
     page: Page
@@ -49,6 +52,7 @@ class Drawing:
     lines: dict[int, Record] = field(default_factory=dict)
     patterns: dict[int, Record] = field(default_factory=dict)
     next_id: dict[str, int] = field(default_factory=dict)
+    foreign: Foreign = field(default_factory=Foreign)
 
     @classmethod
     def blank(cls, page: Page, style: Style | None = None) -> Self:

@@ -7,6 +7,7 @@ A value is a frozen dataclass, equal by what it holds, with `to_json` (plain JSO
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from typing import Any, Protocol
 
 from stippler.drawing.area import Area
@@ -43,6 +44,14 @@ _READERS: dict[str, Callable[[Mapping[str, Any]], Record]] = {
     STYLE: Style.from_json,
 }
 KINDS = (PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE)
+
+
+def fields_of(kind: str) -> frozenset[str]:
+    """Return the names that a kind's `to_json` gives: the fields of its dataclass."""
+    if kind == REFERENCE:
+        return frozenset(("picture", "width_mm", "adjustment"))
+    reader: Any = _READERS.get(kind)
+    return frozenset(f.name for f in fields(reader.__self__)) if reader else frozenset()
 
 
 def value_from_json(kind: str, data: Mapping[str, Any], pictures: Mapping[str, Picture]) -> Record:

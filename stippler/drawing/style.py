@@ -22,6 +22,9 @@ STARTS = ("top", "border")
 SIZES = ("tone", "regions")
 """Dot sizes: solved for the tone, or as the paper has them, by how far regions had to grow."""
 
+SPACINGS = ("even", "lloyd", "delaunay-mean", "springs")
+"""Ways to space dots: evenly without rows, Lloyd alone, and the paper's comparisons."""
+
 ARRANGEMENTS = ("hexagonal", "random")
 """How an area is filled where there is no picture."""
 
@@ -56,6 +59,9 @@ class Style:
         enlarged, of large ones reduced, of still larger ones dropped.
     weighted : bool
         Relax by the wanted density; False is the paper's unweighted form.
+    spacing : {"even", "lloyd", "delaunay-mean", "springs"}
+        "even" leaves no rows; "lloyd" is the paper's relaxation alone, and what unweighted dots
+        get; the last two are the paper's comparisons.
     pen : str
         Whose shapes the dots have; see `stippler.drawing.pens`.
     """
@@ -69,6 +75,7 @@ class Style:
     start: str = "top"
     sizes: str = "tone"
     weighted: bool = True
+    spacing: str = "even"
     pen: str = DEFAULT_PEN
     name: str = ""
 
@@ -109,6 +116,7 @@ class Style:
             ("growth", self.growth, GROWTHS),
             ("start", self.start, STARTS),
             ("sizes", self.sizes, SIZES),
+            ("spacing", self.spacing, SPACINGS),
         ):
             if value not in known:
                 raise ParameterError(f"{value!r} is unknown", name, f"one of {', '.join(known)}")

@@ -12,8 +12,8 @@ from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import Plan
 from stippler.stippling.postprocess import part_close
 from stippler.stippling.radii import solve_radii
-from stippler.stippling.relax import Relaxation
-from stippler.stippling.stipple import Progress, raster_for, step_weights
+from stippler.stippling.run_relaxation import relaxed
+from stippler.stippling.stipple import Progress, raster_for
 
 
 def carry_on(
@@ -63,9 +63,5 @@ def _relaxed(
     to_edge = np.minimum(np.minimum(at[:, 0], w - at[:, 0]), np.minimum(at[:, 1], h - at[:, 1]))
     beside = to_edge < raster.bleed * raster.pixel_mm
     page = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
-    for n_steps, field in step_weights(raster, plan, n_done):
-        engine = Relaxation(points * raster.pixel_mm, page, beside, density=field)
-        for _ in range(n_steps):
-            engine.step()
-            points = np.asarray(engine.points) / raster.pixel_mm
-            yield points
+    for moved, _ in relaxed(raster, plan, points, page, beside, n_done):
+        yield moved

@@ -13,12 +13,14 @@ from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_c
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Stars
+from stippler.kernels.cells.spacing import MASS, PER_AREA
+from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.compartments import RECTANGLE, Compartments
 from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
+from stippler.stippling.spacing import Rules, Wanted
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int32]
@@ -45,6 +47,9 @@ _NO_CELLS = np.empty((0, 6))
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 NO_OUTLINES = Outlines(np.empty((0, 2)), _NO_ROWS, _NO_ROWS, _NO_ROWS, np.zeros(1, np.int64))
+_NO_WANTS = np.empty((0, 3))
+LLOYD = Spacing(_NO_WANTS, _NO_WANTS, np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(12))
+"""No rules: dots go to the centroids of their cells."""
 
 
 class Cells:
@@ -82,6 +87,32 @@ class Cells:
         self._free_of_dot = np.zeros(n)
         self._has_stars = False
         self.n_failed = n  # stars of the step before that did not hold
+        self.rules = LLOYD
+
+    def space_by(self, wanted: Wanted, radius_mm: Floats | None = None) -> None:
+        """Move dots by the rules of even spacing from now on; what is wanted goes by the field.
+
+        With radii given, by dot, density follows from these and the tone.
+        """
+        n, n_parts = self.n, len(self.parts)
+        self._sort(self._has_stars)
+        self.rules = Spacing(
+            np.zeros((n, 3)), np.zeros((n, 3)), wanted.table(), np.ones(n_parts),
+            np.empty(0) if radius_mm is None else np.asarray(radius_mm, np.float64)[self.order],
+            Rules().array(wanted.scale),
+        )  # fmt: skip
+        self._relax(np.arange(n, dtype=np.int32), False, self._new_moves())
+        found = self.rules.found
+        mass = np.bincount(self.compartment_of_dot, found[:, MASS], minlength=n_parts)
+        count = np.bincount(self.compartment_of_dot, minlength=n_parts)
+        unit = np.divide(count, mass, out=np.ones(n_parts), where=mass > 0)
+        found[:, MASS] *= unit[self.compartment_of_dot]
+        found[:, PER_AREA] *= unit[self.compartment_of_dot]
+        self.rules = self.rules._replace(unit=unit, wants=found, found=self.rules.wants)
+
+    def set_rules(self, rules: Rules) -> None:
+        """Change how strictly dots are spaced."""
+        self.rules = self.rules._replace(rule=rules.array(float(self.rules.rule[-1])))
 
     @property
     def keeps_stars(self) -> bool:
@@ -109,6 +140,7 @@ class Cells:
         if redirect is not None:
             self._redirect(new, redirect)
         self.xs, self.ys = new.x, new.y
+        self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
         if self.n:
             self._slack += float(new.gone.max())
             self._keep = float(new.gone.mean()) < KEEP_BELOW * self.spacing
@@ -139,7 +171,9 @@ class Cells:
         self._sort(self._has_stars)
         cells = np.zeros((self.n, 6))
         rows = np.arange(self.n, dtype=np.int32)
-        self._relax(rows, False, self._new_moves(), cells, weighted, _NO_STARS)
+        rules, self.rules = self.rules, LLOYD
+        self._relax(rows, False, self._scratch_moves(), cells, weighted, _NO_STARS)
+        self.rules = rules
         out = np.empty_like(cells)
         out[self.order] = cells
         return out
@@ -154,7 +188,7 @@ class Cells:
         row_of_dot[self.order] = np.arange(self.n, dtype=np.int32)
         found: dict[int, Outlines] = {}
         n_sides = np.zeros(self.n, np.int32)
-        new = self._new_moves()
+        new = self._scratch_moves()
         dots = self._dots._replace(fixed=np.empty(0, np.bool_))
 
         def part(start: int, stop: int) -> None:
@@ -166,7 +200,7 @@ class Cells:
                 )  # fmt: skip
                 relax_dots(
                     start, stop, cap, row_of_dot, False, dots, self._table, self.grid.border,
-                    self._field_for(weighted), self.over, new, cells, _NO_STARS, mine,
+                    self._field_for(weighted), self.over, new, cells, _NO_STARS, mine, LLOYD,
                 )  # fmt: skip
                 if (new.kind[row_of_dot[start:stop]] == TOO_MANY_CORNERS).any():
                     cap *= 16
@@ -197,6 +231,10 @@ class Cells:
         new = np.zeros(n + SCAN), np.zeros(n + SCAN), np.empty(n)
         return Moves(*new, self._kind_of_cell, self._free_of_dot)
 
+    def _scratch_moves(self) -> Moves:
+        """Return room for moves that leaves what is known of kept cells alone."""
+        return self._new_moves()._replace(kind=np.zeros(self.n, np.uint8), free=np.empty(self.n))
+
     @property
     def _dots(self) -> Dots:
         return Dots(self.xs, self.ys, self.fixed, self.compartment_of_dot)
@@ -225,12 +263,12 @@ class Cells:
         while n:
             done = parallel_for(
                 relax_dots, n, cap, which, is_all, dots, self._table, self.grid.border, field,
-                self.over, new, cells, stars, NO_OUTLINES,
+                self.over, new, cells, stars, NO_OUTLINES, self.rules,
                 grain=GRAIN if is_all else FEW, chunks=8, cancel=cancel,
             )  # fmt: skip
             if not done:
                 return False
-            rows = np.flatnonzero(self._kind_of_cell == TOO_MANY_CORNERS).astype(np.int32)
+            rows = np.flatnonzero(new.kind == TOO_MANY_CORNERS).astype(np.int32)
             which = rows if is_all else np.intersect1d(which, rows).astype(np.int32)
             is_all, n, cap = False, len(which), 16 * cap
         return True
@@ -239,7 +277,7 @@ class Cells:
         new = new._replace(kind=self._kind_of_cell, free=self._free_of_dot)
         stars = Stars(self._star, self._n_star, _NO_FLAGS)
         done = self._relax(_NO_ROWS, True, new, stars=stars, cancel=cancel)
-        if done and not self.parts.is_convex.all():
+        if done:
             self._distrust(np.ones(self.n, np.bool_))
         return done
 
@@ -248,6 +286,8 @@ class Cells:
 
         Beyond a side of theirs lies what is nobody's, since a border cuts its cell apart.
         """
+        if self.parts.is_convex.all() or len(self.rules.table):
+            return  # by rules, all cells at a border are computed in each step
         of_dot = self.compartment_of_dot
         rows = np.flatnonzero(computed & ~self.parts.is_convex[of_dot]).astype(np.int32)
         todo = np.zeros(self.n, np.uint8)
@@ -265,8 +305,7 @@ class Cells:
         stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
         done = parallel_for(
             verify_stars, self.n, self._dots, self._table, self.grid.border, self._field,
-            self.over, new, stars,
-            todo, grain=GRAIN, cancel=cancel,
+            self.over, new, stars, self.rules, todo, grain=GRAIN, cancel=cancel,
         )  # fmt: skip
         which = np.flatnonzero(todo).astype(np.int32)
         self.n_failed = len(which)
@@ -283,7 +322,7 @@ class Cells:
             stars.suspect[:] = 0
             parallel_for(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
             which = rows[todo[rows] != 0]
-        if done and not self.parts.is_convex.all():
+        if done:
             self._distrust(settled)
         return done
 
@@ -321,6 +360,10 @@ class Cells:
             if cancel is not None and cancel():
                 return False
             sorted_rows[name] = getattr(self, name)[order]
+        if len(self.rules.table):
+            wants, radius = self.rules.wants[order], self.rules.radius
+            radius = radius[order] if len(radius) else radius
+            self.rules = self.rules._replace(wants=wants, radius=radius)
         for name, rows in sorted_rows.items():
             setattr(self, name, rows)
         self.xs[:n], self.ys[:n] = self.xs[order], self.ys[order]

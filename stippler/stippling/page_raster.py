@@ -142,6 +142,17 @@ class PageRaster:
         values = self._under(points)
         return self.rule.radius(values), self.rule.density(values)
 
+    def density_under(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the density that the rule gives where dots lie; 0 beyond the bleed."""
+        h, w = self.darkness.shape
+        mirrored = np.column_stack([
+            _mirrored(points[:, axis], float(size)) for axis, size in ((0, w), (1, h))
+        ])  # fmt: skip
+        density: NDArray[np.float64] = self.rule.density(self._under(mirrored))
+        beyond = np.abs(points - 0.5 * np.array([w, h])) > 0.5 * np.array([w, h]) + self.bleed
+        density[beyond.any(axis=1)] = 0.0
+        return density
+
     def _under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
         values = np.empty(len(points), np.float32)
         points = np.ascontiguousarray(points)
@@ -177,6 +188,13 @@ def _share_that_fits(
     h, w = rows.stop - rows.start, columns.stop - columns.start
     n_cells = CELLS_PER_DOT * densest * (h + 2 * bleed) * (w + 2 * bleed)
     return float(max(_MOST_CELLS, 16 * CELLS_PER_DOT * n_dots) / max(n_cells, 1.0))
+
+
+def _mirrored(x: NDArray[np.float64], size: float) -> NDArray[np.float64]:
+    """Return where on the page the bleed's places are repeated from, along one axis."""
+    inside = np.abs(x)
+    back: NDArray[np.float64] = np.clip(size - np.abs(size - inside), 0.0, size)
+    return back
 
 
 def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -8,6 +8,7 @@ from stippler.drawing.style import (
     GROWTHS,
     MAX_DOTS,
     SIZES,
+    SPACINGS,
     STARTS,
 )
 from stippler.drawing.style import Style as Plan
@@ -20,6 +21,7 @@ __all__ = [
     "GROWTHS",
     "MAX_DOTS",
     "SIZES",
+    "SPACINGS",
     "STARTS",
     "Plan",
 ]

@@ -10,17 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing.style import SPACINGS
 from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells, Redirect
 from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
+from stippler.stippling.spacing import Rules, Wanted, rules_after
 from stippler.stippling.tessellation import Tessellation
 
 __all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
 
-METHODS = ("lloyd", "delaunay-mean", "springs")
+AT_REST = 0.005
+"""Largest move of a step, in mean spacings, at which dots spaced by the rules have come to rest."""
 
 Cancel = Callable[[], bool] | threading.Event | None
 
@@ -40,7 +43,8 @@ class RunReport:
 
     Attributes
     ----------
-    reason : {"iterations", "tolerance", "cancelled"}
+    reason : {"iterations", "tolerance", "rest", "cancelled"}
+        At rest are dots spaced evenly once hardly any moves.
     """
 
     reason: str
@@ -71,8 +75,13 @@ class Relaxation:
         no mass keeps its place.
     over_relaxation : float
         The share of the way to the centroid that a dot goes, above 0 and below 2.
-    method : {"lloyd", "delaunay-mean", "springs"}
-        The other two are the paper's comparisons.
+    method : {"lloyd", "even", "delaunay-mean", "springs"}
+        "even" spaces dots by rules that leave no rows and come to rest, in proportion to the
+        density; the last two are the paper's comparisons.
+    wanted : Wanted, optional
+        How dense and how large "even" has dots to be by levels of the density.
+    radius_mm : (n,) array_like, optional
+        The dots' own sizes, by which "even" spaces them then.
 
     Raises
     ------
@@ -96,10 +105,12 @@ class Relaxation:
         over_relaxation: float = 1.0,
         *,
         method: str = "lloyd",
+        wanted: Wanted | None = None,
+        radius_mm: ArrayLike | None = None,
     ) -> None:
-        if method not in METHODS:
+        if method not in SPACINGS:
             raise ParameterError(
-                f"{method!r} is not known", "method", f"give one of {', '.join(METHODS)}"
+                f"{method!r} is not known", "method", f"give one of {', '.join(SPACINGS)}"
             )
         self._method = method
         xy = _checked_points(points)
@@ -118,6 +129,14 @@ class Relaxation:
         part_coinciding(xy, found, self._parts, self._fixed)
         self._density = density
         self._cells = Cells(xy, self._fixed, found, self._parts, density, float(over))
+        self._rules: Rules | None = None
+        self._n_done = 0
+        if method == "even":
+            if wanted is None:
+                values = None if density is None else density.values
+                wanted = Wanted.uniform() if values is None else Wanted.in_proportion(values)
+            own = None if radius_mm is None else _checked(radius_mm, n, np.float64, "radius", 0)
+            self._cells.space_by(wanted, own)
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -128,6 +147,10 @@ class Relaxation:
 
     def __len__(self) -> int:
         return self._cells.n
+
+    def set_rules(self, rules: Rules) -> None:
+        """Change how strictly the next steps of "even" space dots; they loosen no more by then."""
+        self._rules = rules
 
     @property
     def n_failed(self) -> int:
@@ -187,6 +210,8 @@ class Relaxation:
                 progress(i + 1, report)
             if tolerance_mm > 0.0 and report.largest_mm <= tolerance_mm:
                 return RunReport("tolerance", tuple(steps))
+            if self._method == "even" and report.largest_mm <= AT_REST * self._cells.spacing:
+                return RunReport("rest", tuple(steps))
         return RunReport("iterations", tuple(steps))
 
     def cell_areas(self) -> NDArray[np.float64]:
@@ -212,11 +237,14 @@ class Relaxation:
     def _step(
         self, cancel: Callable[[], bool] | None, redirect: Redirect | None = None
     ) -> StepReport | None:
-        if self._method != "lloyd":
+        if self._method not in ("lloyd", "even"):
             return self._step_by_neighbours()
+        if self._method == "even":
+            self._cells.set_rules(self._rules or rules_after(self._n_done))
         gone = self._cells.step(cancel, redirect)
         if gone is None:
             return None
+        self._n_done += 1
         n_free = len(self) - int(np.count_nonzero(self._fixed))
         if not n_free:
             return StepReport(0.0, 0.0, 0)
@@ -267,8 +295,9 @@ def relax(
     density : (h, w) array_like, callable or DensityField, optional
         Weight: an array over the polygon's bounding box, row 0 at its least y, or a function
         of arrays x and y.
-    method : {"lloyd", "delaunay-mean", "springs"}
-        The other two are for comparison: they know no border and no density.
+    method : {"lloyd", "even", "delaunay-mean", "springs"}
+        "even" leaves no rows and comes to rest; dots are as dense as the density says. The last
+        two are for comparison: they know no border and no density.
     compartment_of_dot, tolerance_mm, over_relaxation
         See `Relaxation`.
 

@@ -13,7 +13,7 @@ from stippler.kernels.cells.tables import Dots, Grid, Moves, Stars
 from stippler.kernels.dots.bucket_grid import find_in_circle, place_dots
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
-from stippler.stippling.cells import CORNER_CAP, NO_OUTLINES
+from stippler.stippling.cells import CORNER_CAP, LLOYD, NO_OUTLINES
 from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import DensityField, running_sums
@@ -170,7 +170,7 @@ class LocalRelaxation:
         while len(slots):
             parallel_for(
                 relax_dots, len(slots), cap, slots, False, self._dots, self._table,
-                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, NO_OUTLINES,
+                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, NO_OUTLINES, LLOYD,
                 grain=128, chunks=2,
             )  # fmt: skip
             slots = slots[self._moves.kind[slots] == TOO_MANY_CORNERS]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +21,11 @@ from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.postprocess import at_edge, even_rim, part_close
 from stippler.stippling.radii import solve_radii
+from stippler.stippling.run_relaxation import relaxed
 from stippler.stippling.tone import Shortfall, shortfall
-
-if TYPE_CHECKING:
-    from stippler.stippling.density import DensityField
 
 _TRIES = 6  # to meet the number of dots asked for
 _NOTED, _BANDS = 0.03, 10  # tone that may lack without a note, in so many bands of darkness
-_LAST_STEPS = 5  # weighted by the darkness itself
 _GIVES = (0.6, 0.3, 0.2, 0.1)  # how far a dot may move across the page's edge, in its radius
 
 
@@ -98,7 +94,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     for share, points in _first_dots(raster, plan):
         yield snapshot("first dots", round(1000 * share), 1000, points)
     if len(points) and plan.iterations:
-        for k, (moved, movement_mm) in enumerate(_relax(raster, plan, points)):
+        for k, (moved, movement_mm) in enumerate(
+            relaxed(raster, plan, points, raster.outline_mm())
+        ):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
     points = raster.trim(points, plan.n_asked)
@@ -133,7 +131,9 @@ def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterat
         points, radii = first.position_px[keep], radii[keep]
         yield snapshot("first dots", round(1000 * share), 1000, points, radii)
     if len(points) and plan.iterations:
-        for k, (moved, movement_mm) in enumerate(_relax(raster, plan, points)):
+        for k, (moved, movement_mm) in enumerate(
+            relaxed(raster, plan, points, raster.outline_mm())
+        ):
             points = moved
             yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
     points = raster.onto_ink(raster.trim(points, None))
@@ -271,49 +271,6 @@ def _trimmed_to(
             break
         share *= 1.0 + missing / len(points)
     return best
-
-
-def _relax(
-    raster: PageRaster, plan: Plan, points: NDArray[np.float64]
-) -> Iterator[tuple[NDArray[np.float64], float]]:
-    """Run Lloyd steps on the whole raster; yield points in pixels and their mean movement in mm."""
-    from stippler.stippling.relax import Relaxation
-
-    outline = raster.outline_mm()
-    for n_steps, field in step_weights(raster, plan):
-        at = np.clip(points * raster.pixel_mm, outline[0], outline[2])
-        engine = Relaxation(at, outline, density=field)
-        for _ in range(n_steps):
-            report = engine.step()
-            points = np.asarray(engine.points) / raster.pixel_mm
-            yield points, float(report.mean_mm)
-
-
-def step_weights(
-    raster: PageRaster, plan: Plan, n_done: int = 0
-) -> Iterator[tuple[int, DensityField]]:
-    """Yield how many steps are left after those that are done, and by what they are weighted.
-
-    By the square of the density, since dots settle at its root. The last steps are weighted by
-    the darkness itself: each dot then lies in the midst of the ink that its cell asks for, and
-    fine detail is drawn where it is; its size makes up for the density that is lost, so dots of
-    one size do without. The paper's form weighs all ink alike; white weighs nothing in any form,
-    and draws no dots.
-    """
-    from stippler.stippling.density import DensityField
-
-    x, y = raster.outline_mm()[0]
-    solved = plan.weighted and plan.sizes == "tone" and raster.rule.varies
-    n_last = min(_LAST_STEPS, plan.iterations // 3) if solved else 0
-    n_first = plan.iterations - n_last - n_done
-    if n_first > 0:
-        density = raster.density()
-        weight = np.square(density / density.max()) if plan.weighted else np.sign(density)
-        yield n_first, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
-    n_last = min(n_last, plan.iterations - n_done)
-    if n_last > 0:
-        weight = raster.with_bleed(raster.darkness)
-        yield n_last, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
 
 
 def _finish(

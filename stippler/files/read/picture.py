@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
-from stippler.drawing.reference import Reference
+from stippler.drawing.reference import Picture, Reference
 from stippler.errors import ParameterError, PictureError
 from stippler.files.read import jpeg, pillow, png, tiff
 from stippler.files.read.darkness import TONES, check_tone, darkness_of_pixels
@@ -27,12 +27,15 @@ __all__ = [
     "check_tone",
     "darkness_of_array",
     "darkness_of_image",
+    "picture_of_bytes",
     "read_darkness",
     "read_picture",
     "size_of_picture",
 ]
 
 MAX_PIXELS = 128_000_000
+MOST_KEPT = 256 * 2**20
+"""Bytes of a picture's file that a drawing keeps, at most."""
 _TURNED = (5, 6, 7, 8)
 # what decoders raise on damaged files
 _DAMAGED = (OSError, ValueError, SyntaxError, EOFError, LookupError, TypeError, RuntimeError)
@@ -99,8 +102,30 @@ def read_darkness(
 def read_picture(
     path: str | Path, *, tone: str, width_mm: float, notes: list[str] | None = None
 ) -> Reference:
-    """Read a picture file as the reference of a page `width_mm` wide; as `read_darkness`."""
-    return Reference(read_darkness(path, tone, notes), width_mm)
+    """Read a picture file as the reference of a page `width_mm` wide; as `read_darkness`.
+
+    The reference keeps the file as it came, unless that has more than `MOST_KEPT` bytes.
+    """
+    check_tone(tone)
+    path = Path(path)
+    with _told(path), path.open("rb") as stream:
+        data = stream.read(MOST_KEPT + 1)
+        kept = len(data) <= MOST_KEPT
+        source: BinaryIO = io.BytesIO(data) if kept else stream
+        source.seek(0)
+        darkness, told = darkness_of_pixels(_decoded(source), tone)
+    if notes is not None:
+        notes.extend(told)
+    picture = Picture(darkness, tone, path.name, data if kept else None)
+    return Reference.of(picture, width_mm)
+
+
+def picture_of_bytes(data: bytes, name: str, tone: str) -> Picture:
+    """Read a picture from a file's bytes; as `read_darkness`."""
+    check_tone(tone)
+    with _told(Path(name or "picture")):
+        darkness, _ = darkness_of_pixels(_decoded(io.BytesIO(data)), tone)
+    return Picture(darkness, tone, name, data)
 
 
 def darkness_of_image(image: Image.Image, tone: str = "linear") -> NDArray[np.float32]:

@@ -21,17 +21,32 @@ import numpy as np
 from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field
 from stippler.kernels.cells.kept_borders import move_by_lines
 from stippler.kernels.cells.relaxation import INNER, KEPT
-from stippler.kernels.cells.tables import F8, I4, U1, Border, Dots, Field, Grid, Moves, Stars
+from stippler.kernels.cells.spacing import ask, blend, rules_in_lanes
+from stippler.kernels.cells.tables import (
+    F8,
+    I4,
+    U1,
+    Border,
+    Dots,
+    Field,
+    Grid,
+    Moves,
+    Spacing,
+    Stars,
+)
 from stippler.kernels.machine.jit import ZERO, inline, inner, kernel
 from stippler.kernels.machine.simd import (
     BUFFER,
     LANES,
     corners_of_star,
+    get,
+    load_lanes,
     moments_of,
     outside_box,
     put,
     reach2_of,
     stack_doubles,
+    stack_ints,
 )
 
 
@@ -46,13 +61,14 @@ def verify_stars(
     over: float,
     moves: Moves,
     stars: Stars,
+    spacing: Spacing,
     todo: U1,
 ) -> None:
     """Move the dots whose stars still hold; set `todo` for others.
 
     ``moves.kind`` and ``moves.free`` are those of the step before.
     """
-    U, V = stack_doubles(BUFFER), stack_doubles(BUFFER)
+    U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
     for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
@@ -83,9 +99,20 @@ def verify_stars(
             continue
         todo[i] = 0
         moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
+        if dots.fixed[i] and len(spacing.table) == 0:
+            continue
+        mass, du, dv = _way_to_centroid(U, V, m, i, x, y, dots, field, over, stars, out)
+        if len(spacing.table):
+            area, mu, mv = moments_of(U, V, m)
+            area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
+            ask(spacing, i, c, area, mass)
+            load_lanes(N, stars.around, i)
+            put(N, m, get(N, 0))  # corner k lies between the dots k and k + 1 of a star
+            ru, rv = rules_in_lanes(U, V, N, ZERO + 1, m, i, x, y, dots, spacing)
+            if mass > 0.0:
+                du, dv = blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
         if dots.fixed[i]:
             continue
-        du, dv = _way_to_centroid(U, V, m, i, x, y, dots, field, over, stars, out)
         moves.x[i] = min(max(x + du, x0), x1)
         moves.y[i] = min(max(y + dv, y0), y1)
         moves.gone[i] = math.sqrt(du * du + dv * dv)
@@ -96,15 +123,15 @@ def verify_stars(
 def _way_to_centroid(
     U: Any, V: Any, m: int, i: int, x: float, y: float, dots: Dots, field: Field, over: float,
     stars: Stars, out: F8,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the way to the (weighted) centroid of a cell, (over-)relaxed; 0 without mass."""
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return a cell's mass and the way to its centroid, (over-)relaxed; 0 without mass."""
     area, du, dv = moments_of(U, V, m)
     area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
     if len(field.sums):
         outline_of_lanes(U, V, m, out)
         area, du, dv = sum_field(out, m, x, y, field)
     if not area > 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     du, dv = du / area, dv / area
     if len(field.sums):  # next to nothing can have its centroid anywhere, by rounding
         share = free_share(out, m, du, dv)
@@ -113,9 +140,9 @@ def _way_to_centroid(
         for k in range(m):
             a, b = dots.x[stars.around[i, k]] - x, dots.y[stars.around[i, k]] - y
             if over * (a * du + b * dv) > 0.5 * (a * a + b * b):
-                return du, dv
-        return over * du, over * dv
-    return du, dv
+                return area, du, dv
+        return area, over * du, over * dv
+    return area, du, dv
 
 
 @inner

@@ -30,6 +30,7 @@ from stippler.kernels.cells.grid import seen_distance, spot_of
 from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
 from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
+from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
 from stippler.kernels.cells.tables import (
     F8,
     I4,
@@ -40,6 +41,7 @@ from stippler.kernels.cells.tables import (
     Moves,
     Outlines,
     Pads,
+    Spacing,
     Spot,
     Stars,
 )
@@ -70,7 +72,7 @@ INNER, RIM, TOO_MANY_CORNERS, KEPT = 0, 1, 2, 3
 def relax_dots(
     start: int, stop: int, corner_cap: int, which: I4, is_all: bool, dots: Dots, grid: Grid,
     border: Border, field: Field, over: float, moves: Moves, cells: F8, stars: Stars,
-    outlines: Outlines,
+    outlines: Outlines, spacing: Spacing,
 ) -> None:  # fmt: skip
     """Compute the cells of dots ``which[start:stop]`` and where relaxation takes the dots.
 
@@ -89,6 +91,8 @@ def relax_dots(
         area, square of the farthest corner's distance.
     outlines
         Results, unless empty.
+    spacing
+        The rules that dots move by, or none: then they go to their centroids.
     """
     room = border.most_edges + 1
     pads = Pads(
@@ -103,7 +107,7 @@ def relax_dots(
     )
     _relax(
         start, stop, which, is_all, dots, grid, border, field, over, moves, cells, stars,
-        outlines, pads,
+        outlines, spacing, pads,
     )  # fmt: skip
 
 
@@ -111,7 +115,7 @@ def relax_dots(
 def _relax(
     start: int, stop: int, which: I4, is_all: bool, dots: Dots, grid: Grid, border: Border,
     field: Field, over: float, moves: Moves, cells: F8, stars: Stars, outlines: Outlines,
-    pads: Pads,
+    spacing: Spacing, pads: Pads,
 ) -> None:  # fmt: skip
     U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
     S = stack_ints(BUFFER)
@@ -125,7 +129,7 @@ def _relax(
         x, y = dots.x[i], dots.y[i]
         is_fixed = len(dots.fixed) > 0 and dots.fixed[i]
         moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
-        if is_fixed and len(stars.around) == 0:
+        if is_fixed and len(stars.around) == 0 and len(spacing.table) == 0:
             continue
         c = dots.compartment[i]
         spot = spot_of(x, y, c, grid)
@@ -146,7 +150,7 @@ def _relax(
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
             n_star = ZERO
-            if is_rim:
+            if is_rim and len(spacing.table) == 0:
                 n_star = _star_at_border(N, S, m, is_packed, n, grid.whole[c, 4], pads)
             if n_star >= 3:
                 has_holes = n > 0 and pads.out[n - 1, 5] != 0.0
@@ -154,11 +158,17 @@ def _relax(
                 _keep_star(S, n_star, i, stars)
             else:
                 _keep_star(N, m if is_packed else ZERO, i, stars)
-        if is_fixed:
+        if is_fixed and len(spacing.table) == 0:
             continue
         if len(outlines.n_sides):
             _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
         mass, du, dv = _centroid_of(U, V, m, is_packed, n, field, spot, i, cells, pads)
+        if len(spacing.table):
+            du, dv = _way_by_rules(
+                U, V, N, m, is_packed, n, dots, spot, i, c, mass, du, dv, spacing, pads
+            )
+        if is_fixed:
+            continue
         if n and mass > 0.0:
             margin = 1e-10 * math.sqrt(reach2) + 1e-15 * (abs(x) + abs(y))
             area = mass
@@ -279,6 +289,29 @@ def _centroid_of(
         share = free_share(pads.out, n, du, dv)
         du, dv = share * du, share * dv
     return mass, du, dv
+
+
+@merged
+def _way_by_rules(
+    U: Any, V: Any, N: Any, m: int, is_packed: bool, n: int, dots: Dots, spot: Spot, i: int,
+    c: int, mass: float, du: float, dv: float, spacing: Spacing, pads: Pads,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the way that the rules of spacing take from (du, dv), that to the centroid."""
+    if is_packed and n == 0:
+        area, mu, mv = moments_of(U, V, m)
+        area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
+        ru, rv = rules_in_lanes(U, V, N, ZERO, m, i, spot.x, spot.y, dots, spacing)
+    else:
+        if n == 0:
+            n = m
+            outline_of_cell(pads.cell, m, pads.out)
+            put_numbers(N, pads.cell, m, False, 0, pads.out)
+        area, mu, mv, _ = sum_area(pads.out, n)
+        ru, rv = rules_at_border(pads.out, n, i, spot.x, spot.y, dots, spacing)
+    ask(spacing, i, c, area, mass)
+    if not mass > 0.0:
+        return 0.0, 0.0
+    return blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
 
 
 @inner

@@ -83,6 +83,22 @@ class Stars(NamedTuple):
     suspect: U1
 
 
+class Spacing(NamedTuple):
+    """What the rules of even spacing go by, see `spacing`; an empty `table` is Lloyd alone.
+
+    `wants` holds by row what each dot wanted in the step before, `found` what it wants now.
+    `table` gives dots per area and radius by levels of the field's mean, one row without a field;
+    `unit` multiplies the former, by compartment; `radius` holds dots' own by row, or is empty.
+    """
+
+    wants: F8
+    found: F8
+    table: F8
+    unit: F8
+    radius: F8
+    rule: F8
+
+
 class Outlines(NamedTuple):
     """Results of a range of dots, unless empty: the outlines of their cells, one after another.
 

@@ -329,6 +329,19 @@ def store_lanes(typing_context: Any, numbers: Any, table: Any, i: Any) -> Any:
     return types.void(numbers, table, types.int64), generate
 
 
+@_operation
+def load_lanes(typing_context: Any, numbers: Any, table: Any, i: Any) -> Any:
+    """Copy row i of a table `LANES` wide to a cell buffer's first `LANES` numbers."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = _data(context, builder, signature.args[1], args[1])
+        vector = _load(builder, data, builder.mul(args[2], _I8(LANES)), LANES)
+        _store(builder, vector, args[0], _I8(0))
+        return context.get_dummy_value()
+
+    return types.void(numbers, table, types.int64), generate
+
+
 def _gather(builder: Any, base: Any, index: Any, mask: Any) -> Any:
     """Load ``base[index]`` in the lanes of the mask, 0 in the others."""
     lanes = index.type.count

@@ -1,0 +1,118 @@
+"""What a document tells, as records of its journal, and a drawing made anew from them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+
+import numpy as np
+
+from stippler.drawing.document import Document
+from stippler.drawing.edit import Edit
+from stippler.drawing.log import ENDED, OPENED, Entry
+from stippler.drawing.reference import Picture
+from stippler.errors import DrawingFileError, StipplerError
+from stippler.files.native import arrays
+from stippler.files.native.drawing_file import ReadPicture
+from stippler.files.native.limits import DEFAULT_LIMITS, Limits
+
+_PICTURE = "picture"
+
+
+class EditLog:
+    """Makes records of what a document tells; each picture is written once.
+
+    Parameters
+    ----------
+    append : callable
+        Takes a record, as a function that makes its bytes in another thread.
+    known : iterable of str
+        Digests of the pictures that the drawing which the journal begins with holds.
+    """
+
+    def __init__(
+        self, append: Callable[[Callable[[], bytes]], None], known: Iterable[str] = ()
+    ) -> None:
+        self._append, self._known = append, set(known)
+
+    def take(self, entry: Entry) -> None:
+        """Write down what has happened; returns at once."""
+        if entry.edit is not None:
+            for digest, picture in entry.edit.pictures.items():
+                if digest not in self._known:
+                    self._known.add(digest)
+                    self._append(partial(_of_picture, picture))
+        self._append(partial(of_entry, entry))
+
+
+def of_entry(entry: Entry) -> bytes:
+    """Return a record."""
+    head = {"what": entry.what, "of_job": entry.of_job, "edit": entry.edit is not None}
+    return arrays.pack(head, dict(entry.edit.arrays()) if entry.edit is not None else {})
+
+
+def _of_picture(picture: Picture) -> bytes:
+    head = {"what": _PICTURE, "digest": picture.digest, "name": picture.name, "tone": picture.tone}
+    if picture.data is not None:
+        return arrays.pack(head, {"data": np.frombuffer(picture.data, np.uint8)})
+    return arrays.pack(head, {"darkness": picture.darkness})
+
+
+def replay(
+    document: Document,
+    records: Iterable[bytes],
+    read_picture: ReadPicture,
+    limits: Limits = DEFAULT_LIMITS,
+) -> tuple[int, str]:
+    """Do to a document all that a journal's records tell of, as far as they make sense.
+
+    Returns
+    -------
+    n_done : int
+        How many records were followed.
+    problem : str
+        Why the next was not; empty if all were.
+    """
+    pictures: dict[str, Picture] = {}
+    if document.drawing.reference is not None:
+        picture = document.drawing.reference.source
+        pictures[picture.digest] = picture
+    n_done, in_run, problem = 0, False, ""
+    for record in records:
+        try:
+            entry = _entry(record, pictures, read_picture, f"record {n_done}", limits)
+            if entry is not None:
+                document.replay(entry)
+                in_run = entry.what == OPENED or (in_run and entry.what != ENDED)
+        except (StipplerError, KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
+            problem = f"record {n_done}: {str(error) or type(error).__name__}"
+            break
+        n_done += 1
+    if in_run:
+        document.replay(Entry(ENDED))
+    return n_done, problem
+
+
+def _entry(
+    record: bytes,
+    pictures: dict[str, Picture],
+    read_picture: ReadPicture,
+    where: str,
+    limits: Limits,
+) -> Entry | None:
+    """Return what a record tells; None for a picture, which is kept in `pictures`."""
+    head, found = arrays.unpack(record, where, limits)
+    what = head.get("what")
+    if what == _PICTURE:
+        name, tone = str(head.get("name", "")), str(head.get("tone", ""))
+        data = found.get("data")
+        if data is not None:
+            picture = read_picture(data.tobytes(), name, tone)
+        else:
+            picture = Picture(found["darkness"], tone, name)
+        pictures[str(head.get("digest"))] = picture
+        return None
+    if not isinstance(what, str):
+        raise DrawingFileError("tells nothing", where)
+    edit = Edit.from_arrays(found, pictures) if head.get("edit") is True else None
+    return Entry(what, edit, head.get("of_job") is True)

@@ -1,0 +1,137 @@
+"""A relaxation as a style asks for it: what it is weighted by, and in which order steps come."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.style import Style
+from stippler.stippling.density import DensityField
+from stippler.stippling.page_raster import PageRaster
+from stippler.stippling.relax import Relaxation
+from stippler.stippling.spacing import LLOYD, Rules, Wanted, rules_after
+
+_LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
+_FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
+_BROKEN = 0.35  # of a spacing, by which first dots are moved so that no order is left to them
+_TO_INK = Rules(gain=40.0, low=0.1, least=0.5)  # the last step: each dot to the midst of its ink
+
+Steps = Iterator[tuple[NDArray[np.float64], float]]
+
+
+def relaxed(
+    raster: PageRaster,
+    style: Style,
+    points: NDArray[np.float64],
+    outline_mm: NDArray[np.float64],
+    fixed: NDArray[np.bool_] | None = None,
+    n_done: int = 0,
+) -> Steps:
+    """Relax the dots of a raster by the steps that are left after `n_done`.
+
+    Parameters
+    ----------
+    points : (n, 2) float64, pixels
+    outline_mm : (4, 2) float64
+        Of the page, or of all that has darkness.
+    fixed : (n,) bool, optional
+
+    Yields
+    ------
+    points : (n, 2) float64, pixels
+        After each step.
+    movement_mm : float
+        Their mean movement in it.
+    """
+    at = points * raster.pixel_mm
+    if style.spacing == "even" and style.weighted:
+        yield from _evenly(raster, style, at, outline_mm, fixed, n_done)
+        return
+    for n_steps, field in step_weights(raster, style, n_done):
+        inside = np.clip(at, outline_mm[0], outline_mm[2])
+        method = "lloyd" if style.spacing == "even" else style.spacing
+        engine = Relaxation(inside, outline_mm, fixed, density=field, method=method)
+        for _ in range(n_steps):
+            report = engine.step()
+            at = np.asarray(engine.points)
+            yield at / raster.pixel_mm, float(report.mean_mm)
+
+
+def _evenly(
+    raster: PageRaster,
+    style: Style,
+    at: NDArray[np.float64],
+    outline_mm: NDArray[np.float64],
+    fixed: NDArray[np.bool_] | None,
+    n_done: int,
+) -> Steps:
+    x, y = raster.outline_mm()[0]
+    field = DensityField(raster.with_bleed(raster.darkness), raster.pixel_mm, (float(x), float(y)))
+    if n_done == 0 and style.first_dots != "random":
+        at = _with_order_broken(at, raster, style.seed, fixed)
+    engine = Relaxation(
+        np.clip(at, outline_mm[0], outline_mm[2]), outline_mm, fixed, density=field,
+        method="even", wanted=Wanted.by_rule(raster.rule, raster.pixel_mm),
+    )  # fmt: skip
+    sizes_follow = style.sizes == "tone" and raster.rule.varies
+    for rules in _schedule(style.iterations, sizes_follow)[n_done:]:
+        engine.set_rules(rules)
+        report = engine.step()
+        yield np.asarray(engine.points) / raster.pixel_mm, float(report.mean_mm)
+
+
+def _schedule(n_steps: int, sizes_follow: bool) -> list[Rules]:
+    """List the rules of each step: first Lloyd's, then those of even spacing.
+
+    Where sizes can make up for it, the last step brings each dot to the midst of its ink.
+    """
+    n_first = min(_FIRST_STEPS, n_steps // 3)
+    n_last = int(sizes_follow and n_steps > 2)
+    middle = [rules_after(k) for k in range(n_steps - n_first - n_last)]
+    return [LLOYD] * n_first + middle + [_TO_INK] * n_last
+
+
+def _with_order_broken(
+    at: NDArray[np.float64], raster: PageRaster, seed: int, fixed: NDArray[np.bool_] | None
+) -> NDArray[np.float64]:
+    """Move each dot by chance, about a third of its spacing: rows grow from any order there is.
+
+    Moved each by itself, dots keep the evenness that they have over longer ways.
+    """
+    by_chance = np.random.default_rng([seed, len(at)]).normal(0.0, _BROKEN, at.shape)
+    px = at / raster.pixel_mm
+    density = raster.density_under(px)
+    moved = px + by_chance / np.sqrt(np.maximum(density, 1e-30))[:, None]
+    stays = ~(raster.density_under(moved) > 0.0) | ~(density > 0.0)
+    if fixed is not None:
+        stays |= fixed
+    moved[stays] = px[stays]
+    out: NDArray[np.float64] = moved * raster.pixel_mm
+    return out
+
+
+def step_weights(
+    raster: PageRaster, style: Style, n_done: int = 0
+) -> Iterator[tuple[int, DensityField]]:
+    """Yield how many of Lloyd's steps are left after those done, and by what they are weighted.
+
+    By the square of the density, since dots settle at its root. The last steps are weighted by
+    the darkness itself: each dot then lies in the midst of the ink that its cell asks for, and
+    fine detail is drawn where it is; its size makes up for the density that is lost, so dots of
+    one size do without. The paper's form weighs all ink alike; white weighs nothing in any form,
+    and draws no dots.
+    """
+    x, y = raster.outline_mm()[0]
+    solved = style.weighted and style.sizes == "tone" and raster.rule.varies
+    n_last = min(_LAST_STEPS, style.iterations // 3) if solved else 0
+    n_first = style.iterations - n_last - n_done
+    if n_first > 0:
+        density = raster.density()
+        weight = np.square(density / density.max()) if style.weighted else np.sign(density)
+        yield n_first, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
+    n_last = min(n_last, style.iterations - n_done)
+    if n_last > 0:
+        weight = raster.with_bleed(raster.darkness)
+        yield n_last, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
