@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import Point, Polygon, box
 
@@ -21,7 +21,12 @@ from tests.stippling.shapes import (
     star_polygon,
 )
 
-SETTINGS = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+SETTINGS = settings(
+    max_examples=40,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+    phases=[p for p in Phase if p is not Phase.shrink],
+)
 
 
 def pieces(points, polygon):
@@ -99,7 +104,7 @@ def test_subdivisions_to_1e_10(data):
     ]  # fmt: skip
     first = 0
     for k, shape in enumerate(shapes):
-        spacing2 = shape.area / max(len(dots[k]), 1)
+        spacing2 = shape.area / max(len(dots[k]), 1) + 1e-5  # coordinates of 40 round to 7e-15
         for i, piece in enumerate(pieces(dots[k], shape), start=first):
             assert cells.area[i] == pytest.approx(piece.area, abs=1e-10 * spacing2)
             parts = [(piece.intersection(pixel), value) for pixel, value in pixels]
