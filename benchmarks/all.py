@@ -27,6 +27,7 @@ TOPICS = (
     "brushes",
     "view",
     "live",
+    "files",
     "soak",
 )
 

@@ -215,6 +215,8 @@ def _own_and_all(
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the medians, own and whole, of still frames and of moving ones; ms."""
     from stippler.drawing.reference import Reference
+    from stippler.drawing.style import Style
+    from stippler.editor.activity import Opening
     from stippler.jobs.work import Source, Work
     from stippler.jobs.worker import Update
     from stippler.stippling.stipple import Progress
@@ -223,7 +225,7 @@ def _own_and_all(
     place = rng.random((_N_DOTS, 2)) * (148.0, 111.0)
     radius = np.full(_N_DOTS, 0.16, np.float32)
     reference = Reference(np.full((111, 148), 0.5, np.float32), 148.0)
-    app.session._request, app.session._asked = 1, Source(Path("even"), "linear", 148.0)
+    app.session.activity = Opening(1, "read", Source(Path("even"), "linear", 148.0), Style())
 
     def tell() -> None:
         moved = place + rng.normal(0, 0.01, place.shape)

@@ -6,9 +6,11 @@ python -m benchmarks.random_areas [EDITS] [SEED] [CHECK_EVERY]
 from __future__ import annotations
 
 import collections
+import json
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path as FilePath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +55,11 @@ def run(
         which, new = dots_in_strip(areas, after, dots, owner)
         owner[which] = new
         if i % check_every == 0:
-            judge(after, dots, owner, f"seed {seed}, edit {i}, {name}")
+            try:
+                judge(after, dots, owner, f"seed {seed}, edit {i}, {name}")
+            except AssertionError as error:
+                error.maps = (areas, after)  # type: ignore[attr-defined]
+                raise
         areas = after
         if i % 10_000 == 0:
             tell(f"{i} edits, {len(areas.areas)} areas, {len(areas.arcs)} borders")
@@ -63,7 +69,10 @@ def run(
 def judge(areas: PlanarMap, dots: NDArray[np.float64], owner: NDArray[np.int64], what: str) -> None:
     """Compare a map with what it would be from scratch, and with what shapely thinks of it."""
     fresh = PlanarMap(areas.arcs, areas.next_arc, areas.next_area)
-    fresh.check()
+    try:
+        fresh.check()
+    except GeometryError as error:
+        raise AssertionError(f"{what}: {error}") from error
     for k in fresh.areas:
         if not fresh.outline(k).equals(areas.outline(k)):
             raise AssertionError(f"{what}: area {k} is not what its borders say")
@@ -181,7 +190,12 @@ def main() -> None:
     given = [int(a) for a in sys.argv[1:]]
     n_edits, seed, check_every = (*given, *(100_000, 1, 1)[len(given) :])
     begun = time.perf_counter()
-    _, count = run(seed, n_edits, check_every, lambda line: print(line, flush=True))
+    try:
+        _, count = run(seed, n_edits, check_every, lambda line: print(line, flush=True))
+    except AssertionError as error:
+        for name, areas in zip(("before", "after"), getattr(error, "maps", ()), strict=False):
+            FilePath(f"out/random-areas-{name}.json").write_text(json.dumps(areas.to_json()))
+        raise
     for name, n in sorted(count.items()):
         print(f"{n:9} {name}")
     spent = time.perf_counter() - begun

@@ -51,12 +51,7 @@ def _lens(repeats: int) -> list[Figure]:
 
 def _open(app: Any) -> None:
     """Give the editor a drawing, as a finished job would."""
-    from stippler.drawing.document import Document
-
-    app.session.drawing = drawing(_N_DOTS)
-    app.session.document = Document(app.session.drawing)
-    app.session.revision += 1
-    app.session.phase = "done"
+    app.session.show(drawing(_N_DOTS))
 
 
 def _mover(app: Any) -> Any:

@@ -9,17 +9,20 @@ Nothing is imported before it is used, so that the command line starts at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+TYPE_CHECKING = False  # what typing has; importing it takes long enough to be interrupted in
 
 if TYPE_CHECKING:
-    from stippler.api import Drawing, fill, pulse_density, relax, stipple
+    from stippler.api import Drawing, fill, open, pulse_density, relax, stipple
     from stippler.errors import StipplerError
 
-__version__ = "0.1.0"
-__all__ = ["Drawing", "StipplerError", "fill", "pulse_density", "relax", "stipple"]
+__all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
+    if name == "__version__":
+        from stippler import version
+
+        return version.VERSION
     if name == "StipplerError":
         from stippler import errors
 

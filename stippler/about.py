@@ -7,10 +7,11 @@ import sys
 from collections.abc import Iterator
 from importlib import metadata
 
-from stippler import __version__, resources
+from stippler import resources
 from stippler.errors import DisplayError
 from stippler.kernels.machine.cache import cache_root
 from stippler.kernels.machine.pool import n_threads
+from stippler.version import VERSION
 from stippler.warm import is_warm
 
 _LIBRARIES = (
@@ -20,7 +21,7 @@ _LIBRARIES = (
 
 def lines() -> Iterator[str]:
     """Yield name and value, a line each."""
-    yield f"stippler   {__version__}"
+    yield f"stippler   {VERSION}"
     yield f"python     {platform.python_version()} ({sys.executable})"
     yield f"system     {platform.platform()}"
     yield f"cores      {n_threads()}"

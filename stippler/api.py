@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -21,7 +21,7 @@ from stippler.units import DEFAULT_WIDTH_MM
 if TYPE_CHECKING:
     from shapely.geometry import MultiPolygon, Polygon
 
-Tone = Literal["linear", "perceptual"]
+Tone = Literal["illustration", "linear", "perceptual"]
 
 
 @dataclass(slots=True, eq=False)
@@ -40,14 +40,31 @@ class Drawing(_Drawing):
     notes: tuple[str, ...] = ()
     inputs: tuple[Path, ...] = ()
 
-    def save(self, path: str | PathLike[str], *, dpi: float = 300.0, form: str = "") -> None:
-        """Write the drawing; `path` ends in .svg, .png or .csv. See `stippler.export.save`."""
+    def save(self, path: str | PathLike[str], *, form: str = "", **options: Any) -> list[Path]:
+        """Write the drawing in the format that the file's ending chooses.
+
+        Parameters
+        ----------
+        path : path
+            Ends in .svg, .svgz, .pdf, .eps, .tif, .png, .csv, .json, .npz, .gcode, .hpgl
+            or .dxf; .stipple keeps all of the drawing.
+        form : str
+            The format by its ending, whatever the file's own.
+        options
+            Such as ``dpi=600``, ``print_width=86`` or ``profile="elsevier"``; see
+            `stippler.export.save` and ``docs/exports.md``.
+
+        Returns
+        -------
+        list of Path
+            The files written; more than one where a format wants a file a pen.
+        """
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi, inputs=self.inputs, form=form)
+        return save(self, Path(path), inputs=self.inputs, form=form, **options)
 
     def _repr_svg_(self) -> str:
-        from stippler.files.svg import svg_chunks
+        from stippler.files.write.svg import svg_chunks
 
         return b"".join(svg_chunks(self)).decode()
 
@@ -60,7 +77,7 @@ def stipple(
     size_range: tuple[float, float] | None = None,
     iterations: int = 20,
     seed: int = 1,
-    tone: Tone = "linear",
+    tone: Tone = "illustration",
     first_dots: str = "pulse-density",
     growth: str = "circular",
     start: str = "top",
@@ -86,8 +103,9 @@ def stipple(
         Relaxation steps.
     seed : int
         Same seed, same drawing, whatever the number of threads.
-    tone : {"linear", "perceptual"}
-        Whether ink replaces the picture's light or its encoded values.
+    tone : {"illustration", "linear", "perceptual"}
+        As an illustrator would draw it, from the picture's own histogram, with deep parts just
+        open; or true at arm's length: ink replaces the picture's light; or its encoded values.
     first_dots : str
         One of `stippler.stippling.plan.FIRST_DOTS`.
     growth : {"circular", "triangular"}
@@ -145,7 +163,7 @@ def draw(
 ) -> Drawing:
     """Carry out a plan."""
     told: list[str] = []
-    reference = Reference(_darkness(image, tone, told), width_mm)
+    reference = _reference(image, tone, width_mm, told)
     last: Progress | None = None
     for last in stages(reference, plan, snapshots=False):
         if show is not None:
@@ -156,6 +174,27 @@ def draw(
     if isinstance(image, str | PathLike):
         drawing.inputs = (Path(image),)
     return drawing
+
+
+def open(path: str | PathLike[str]) -> Drawing:
+    """Open a drawing.
+
+    Parameters
+    ----------
+    path : path
+        A ``.stipple`` file, or a table of dots (.csv), whose page is as large as they need.
+
+    Raises
+    ------
+    DrawingFileError
+        If the drawing is damaged, or was written by a later version.
+    TableError
+        If the table cannot be read.
+    """
+    from stippler.opening import open_file
+
+    drawing = open_file(Path(path))
+    return Drawing(**{f.name: getattr(drawing, f.name) for f in fields(_Drawing)})
 
 
 def pulse_density(
@@ -233,6 +272,15 @@ def _polygon(area: Any) -> Polygon | MultiPolygon:
     from stippler.stippling.compartments import polygon_of
 
     return polygon_of(area, "area")
+
+
+def _reference(image: Any, tone: str, width_mm: float, notes: list[str]) -> Reference:
+    """Return what tone is taken from; of a file it keeps the file."""
+    if isinstance(image, str | PathLike):
+        from stippler.files.read.picture import read_picture
+
+        return read_picture(Path(image), tone=tone, width_mm=width_mm, notes=notes)
+    return Reference(_darkness(image, tone, notes), width_mm)
 
 
 def _darkness(image: Any, tone: str, notes: list[str] | None = None) -> NDArray[np.float32]:

@@ -32,7 +32,7 @@ class App:
     ----------
     plan : Plan
         What to make of the first picture.
-    tone : {"linear", "perceptual"}
+    tone : {"illustration", "linear", "perceptual"}
     width_mm : float
         Of the page.
     preferences : Preferences, optional

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import stat
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -38,6 +36,8 @@ def at_hand(path: Path) -> Iterator[Path]:
     if not _is_stream(path):
         yield path
         return
+    import tempfile  # late: it takes longer to import than all else here
+
     name = "standard input" if os.fspath(path) in _NAMES else os.fspath(path)
     with tempfile.TemporaryDirectory(prefix="stippler-") as folder:
         copy = Path(folder) / "standard-input"
@@ -75,6 +75,8 @@ def _opened(path: Path, name: str) -> contextlib.AbstractContextManager[BinaryIO
 
 
 def _copy(source: BinaryIO, target: BinaryIO, name: str) -> None:
+    import shutil
+
     left = MAX_BYTES
     while piece := source.read(_PIECE):
         left -= len(piece)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stippler.files.table import COLUMNS
+from stippler.files.write.table import FIRST_COLUMNS as COLUMNS
 
 WAIT_S = 180
 ODD = r"$'caf\xe9'"  # in Latin-1
@@ -59,7 +59,7 @@ LINES = {
     "stippler stats - < dots.csv": (0, b"dots ", ""),
     "stippler stats <(cat dots.csv) | cat": (0, b"dots ", ""),
     "stippler render p.png -o -": (2, b"", "--format"),
-    "stippler render p.png -o b.svg --format doc": (2, b"", "svg or png or csv"),
+    "stippler render p.png -o b.svg --format doc": (2, b"", "is no format; choose"),
     "echo hello | stippler render - -o c.svg": (1, b"", "standard input: is no picture"),
     "printf '' | stippler render - -o c.svg": (1, b"", "standard input: is empty"),
     "cat dots.csv | stippler render - -o c.svg": (1, b"", "standard input: is a table of numbers"),
@@ -90,8 +90,8 @@ LINES = {
     f"stippler render p.png -o {'線' * 82}.csv {QUICK}; cat {'線' * 82}.csv": (0, TABLE, ""),
     f"stippler render p.png -o {'線' * 90}.csv {QUICK}": (1, b"", "too long"),
     "stippler render p.png -o i.svg --width 0.001": (2, b"", "0.01 to"),
-    "stippler render p.png -o i.png --dpi 1e9": (2, b"", "resolution"),
-    "stippler render p.png -o i.png --dpi 1e-9": (2, b"", "resolution"),
+    "stippler render p.png -o i.png --dpi 1e9": (2, b"", "dpi"),
+    "stippler render p.png -o i.png --dpi 1e-9": (2, b"", "dpi"),
     f"NUMBA_NUM_THREADS=none stippler render p.png -o j.csv {QUICK}; cat j.csv": (0, TABLE, ""),
     f"NUMBA_OPT=x NUMBA_DISABLE_JIT=maybe stippler render p.png -o j.csv {QUICK}; cat j.csv":
         (0, TABLE, ""),

@@ -12,6 +12,7 @@ from stippler.errors import ParameterError
 
 MAX_BRIGHTNESS = 0.9
 MAX_CONTRAST = 1.0
+MIN_SPAN = 0.05
 GAMMA_RANGE = (0.2, 5.0)
 _BAND_PX = 1 << 18  # a piece at a time, so that what lies between fits the cache
 
@@ -33,18 +34,25 @@ class Adjustment:
         0.2..5. Above 1 the middle tones get lighter, below 1 darker; white and black stay.
     invert : bool
         Black for white, before all else.
+    white, black : float
+        0..1, at least `MIN_SPAN` apart. Tones lighter than `white` become paper, those darker than
+        `black` black, and what lies between is spread out; before the brightness.
     """
 
     brightness: float = 0.0
     contrast: float = 0.0
     gamma: float = 1.0
     invert: bool = False
+    white: float = 0.0
+    black: float = 1.0
 
     def __post_init__(self) -> None:
         for name, value, low, high in (
             ("brightness", self.brightness, -MAX_BRIGHTNESS, MAX_BRIGHTNESS),
             ("contrast", self.contrast, -MAX_CONTRAST, MAX_CONTRAST),
             ("gamma", self.gamma, *GAMMA_RANGE),
+            ("white point", self.white, 0.0, 1.0 - MIN_SPAN),
+            ("black point", self.black, self.white + MIN_SPAN * (1.0 - 1e-9), 1.0),
         ):
             if not (math.isfinite(value) and low <= value <= high):
                 raise ParameterError(
@@ -58,8 +66,9 @@ class Adjustment:
         With darkness d, inverted where the first is 1: d = (d - taken) * factor, held to 0..1;
         then d^k / (d^k + (1 - d)^k) with the steepness k; then d to the power of the exponent.
         """
-        taken = max(self.brightness, 0.0)
-        factor = 1.0 / (1.0 + min(self.brightness, 0.0))
+        span = self.black - self.white
+        taken = self.white + span * max(self.brightness, 0.0)
+        factor = 1.0 / (span * (1.0 + min(self.brightness, 0.0)))
         return float(self.invert), taken, factor, 4.0**self.contrast, self.gamma
 
     def apply(self, darkness: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,10 @@ from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE
 from stippler.drawing.partition import NOWHERE, Partition
 from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
+from stippler.drawing.reference import Reference
 from stippler.drawing.run import Run
 from stippler.drawing.store import DotStore, Rows, union
+from stippler.drawing.style import Style
 
 
 class Document:
@@ -235,7 +238,7 @@ class Document:
     def _step(self, edit: Edit | None, what: str) -> bool:
         if edit is not None:
             self._apply(edit)
-            self._tell(Entry(what))
+            self._tell(Entry(what, edit))
         return edit is not None
 
     # --- the worker's runs ------------------------------------------------------------------
@@ -292,13 +295,32 @@ class Document:
         """Whether dots are being made."""
         return self._draft is not None
 
-    def begin_draft(self, label: str, area: int, pen: str) -> None:
-        """Begin to make the dots of an area anew; those that it has give way at once."""
+    def begin_draft(
+        self, label: str, area: int, style: Style, reference: Reference | None = None
+    ) -> None:
+        """Begin to make the dots of an area anew; those that it has give way at once.
+
+        A draft that was being made is dropped.
+
+        Parameters
+        ----------
+        style : Style
+            What they are made with, which the area has from now on.
+        reference : Reference or None
+            What they are made from; None leaves the drawing's.
+        """
         self._no_stroke()
         self.end_run()
-        self.end_draft()
+        if self._draft is not None:
+            draft, self._draft = self._draft, None
+            self._apply(draft.finish().inverse())
         replaced = np.flatnonzero(self.dots.area == area)
-        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(pen))
+        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(style.pen))
+        i = self.drawing.areas[area].style
+        for kind, k, value in ((records.STYLE, i, style), (records.REFERENCE, 0, reference)):
+            if value is not None and value != self.drawing.get(kind, k):
+                self._draft.set(kind, k, value)
+                self._note_value(kind, k)
         self._renewed()
 
     def draft(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> None:
@@ -346,9 +368,9 @@ class Document:
             self._replayed_step, self._replayed = self.history.open(edit.label, of_job=True), edit
         elif entry.what == ENDED and self._replayed_step is not None:
             self.history.fill(self._replayed_step, self._replayed)
-        elif entry.what in (UNDONE, REDONE):
-            step = self.history.undo if entry.what == UNDONE else self.history.redo
-            self._step(step(), entry.what)
+        elif entry.what in (UNDONE, REDONE) and edit is not None:
+            self._apply(edit)
+            self.history.go_to(entry.n_done)
         elif edit is not None:
             self._apply(edit)
             if entry.what == PART:
@@ -363,6 +385,7 @@ class Document:
         self._tell(Entry(STEP, edit, of_job))
 
     def _tell(self, entry: Entry) -> None:
+        entry = replace(entry, n_done=self.history.n_done)
         for follower in self._followers:
             follower(entry)
 

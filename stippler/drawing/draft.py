@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,10 @@ class Draft:
         dots = self._pen.drawn(Dots.round(position_mm, radius_mm, area=self.area))
         store.append(replace(dots, id=store.new_ids(n)))
         return False
+
+    def set(self, kind: str, i: int, value: Any) -> None:
+        """Set a value of another kind as a part of it."""
+        self._recorder.set(kind, i, value)
 
     def finish(self) -> Edit:
         """Return the edit that it amounts to."""

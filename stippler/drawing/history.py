@@ -144,6 +144,10 @@ class History:
         self._spill()
         return edit
 
+    def go_to(self, n_done: int) -> None:
+        """Count so many steps as done, as far as there are so many; nothing is undone or done."""
+        self.n_done = min(max(n_done, 0), len(self.steps))
+
     def close(self) -> None:
         """Forget all, and what lies on disk."""
         self.steps, self.n_done, self.n_bytes = [], 0, 0

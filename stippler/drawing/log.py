@@ -19,15 +19,19 @@ class Entry:
     ----------
     what : str
         `STEP`: `edit` is a new step of the history. `MADE`: it is none, but how the drawing began.
-        `UNDONE`, `REDONE`: the last step was taken back, or done again. `OPENED`, `PART`, `ENDED`:
-        a run began, has changed something, has ended; its parts joined are its step.
+        `OPENED`, `PART`, `ENDED`: a run began, has changed something, has ended; its parts joined
+        are its step. `UNDONE`, `REDONE`: the last step was taken back, or done again;
+        `edit` is what that did, so that a journal which began later can follow, too.
     of_job : bool
         Whether no hand has made that step.
+    n_done : int
+        How many steps of the history are in effect then.
     """
 
     what: str
     edit: Edit | None = None
     of_job: bool = False
+    n_done: int = 0
 
 
 Follower = Callable[[Entry], None]

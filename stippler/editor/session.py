@@ -6,9 +6,10 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from stippler.drawing.adjustment import NEUTRAL
+from stippler.editor.activity import Activity, Filling, Idle, Job, Making, Opening, Relaxing
 from stippler.editor.exports import Exports
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
@@ -16,62 +17,52 @@ from stippler.errors import ParameterError, StipplerError
 from stippler.jobs import work
 from stippler.jobs.work import Source, Work
 from stippler.names import shown
-from stippler.stippling.fill import Filling, fill_drawing
+from stippler.stippling.fill import Filling as FillValues
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from stippler.drawing.document import Document
-    from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing, Page
     from stippler.drawing.reference import Reference
+    from stippler.drawing.style import Style
     from stippler.jobs.worker import Update, Worker
-    from stippler.stippling.plan import Plan
-    from stippler.stippling.stipple import Progress
 
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
-PHASES: tuple[Phase, ...] = get_args(Phase)
 
 
 class Stipple(Protocol):
-    """Makes a job out of a picture, a plan, and the picture's reference if it is known."""
+    """Makes a job out of a picture, a style, and the picture's reference if it is known."""
 
-    def __call__(self, source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
+    def __call__(self, source: Source, plan: Style, reference: Reference | None) -> Iterator[Work]:
         """Return the job's results to come."""
         ...
 
 
 class Session:
-    """The open picture, the plan being edited, and the job that runs.
+    """The open drawing, the values of the next one, and the job that runs.
 
     Parameters
     ----------
     worker, exporter : Worker
         Where drawings are made and written; the owner closes them.
-    plan : Plan
+    plan : Style
         To begin with.
     stipple : callable
         Makes the jobs.
 
     Attributes
     ----------
-    plan : Plan
-        As the panels show it; `running_plan` is what the dots at hand were asked for with.
+    plan : Style
+        As the panels show it; the drawing holds what its dots were asked for with.
     tone, width_mm, adjustment
         Likewise: how the next start takes the picture.
-    source : Source or None
-        The picture that is open; one that could not be read never gets here.
-    drawing : Drawing or None
-        Page, reference and dots; its dots are those of the last job that came to an end.
+    activity : Activity
+        What is being done now; all that concerns only that is kept there.
     document : Document or None
-        The drawing's dots, once they can be edited.
-    position_mm, radius_mm : arrays or None
-        The dots of a job that makes new ones; None when there is no such job.
-    filling : Filling
+        The open drawing; everything that is shown, painted on and written is in it.
+    filling : stippler.stippling.fill.Filling
         How a page without a picture is filled next.
     revision : int
-        Grows whenever the dots to show, the page or the reference change.
+        Grows whenever another drawing is open.
     exports : Exports
         Which file the drawing was last written to, and whether one is being written.
     """
@@ -80,7 +71,7 @@ class Session:
         self,
         worker: Worker[Work],
         exporter: Worker[Path],
-        plan: Plan,
+        plan: Style,
         *,
         tone: str,
         width_mm: float,
@@ -93,35 +84,34 @@ class Session:
         self.plan = plan
         self.tone, self.width_mm = tone, width_mm
         self.adjustment = NEUTRAL
-        self.running_plan: Plan | None = None
-        self.source: Source | None = None
-        self.drawing: Drawing | None = None
+        self.activity: Activity = Idle()
         self.document: Document | None = None
-        self.position_mm: NDArray[np.float64] | None = None
-        self.radius_mm: NDArray[np.float32] | None = None
         self.revision = 0
-        self.filling = Filling()
+        self.filling = FillValues()
         self.messages = Messages(clock)
         self.exports = Exports(exporter, self.messages)
-        self.phase: Phase = "empty"
-        self.stage, self.done, self.total = "", 0, 0
-        self._asked: Source | None = None  # what the job that runs was asked for
-        self._last: Progress | None = None
-        self._request: int | None = None
-        self._page: Page | None = None  # a page that is asked for
+        self._read: Source | None = None  # where the drawing's picture came from
         self._steps = StepRate()
 
     # --- what a person does -----------------------------------------------------------------
 
     def open(self, path: Path) -> None:
         """Open a picture and begin to stipple it; a job that runs is superseded."""
-        again = self.source is not None and self.source.path == path
+        again = self._read is not None and self._read.path == path
         adjustment = self.adjustment if again else NEUTRAL
         self._begin(Source(path, self.tone, self.width_mm, adjustment))
 
+    def show(self, drawing: Drawing, source: Source | None = None) -> None:
+        """Open a drawing that is there; a job that runs is superseded."""
+        if isinstance(self.activity, Job):
+            self._worker.stop()
+            self._end("stopped")
+        self._open(drawing, source)
+        self.activity = Idle()
+
     def start(self) -> None:
         """Stipple the open picture by the plan, from the beginning."""
-        source = self._asked if self._request is not None else self.source
+        source = self._asked
         if source is None:
             self.messages.say("open a picture first", WARNING)
             return
@@ -129,9 +119,9 @@ class Session:
 
     def new(self, page: Page) -> None:
         """Begin a drawing on an empty page."""
-        self._end_run()
-        self._page, self._asked, self.running_plan = page, None, None
-        self._run("running", work.PREPARE, self._make_ready)
+        self._supersede()
+        request = self._worker.start(self._make_ready)
+        self._run(Opening(request, work.PREPARE, None, self.plan, page))
 
     def relax(self, iterations: int, *, weighted: bool) -> None:
         """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""
@@ -142,44 +132,52 @@ class Session:
         if not len(document.dots):
             self.messages.say("there are no dots to relax", WARNING)
             return
-        self._end_run()
-        self._asked = self.source  # not a picture that could not be read since
-        assert self.drawing is not None
-        frozen = replace(self.drawing, dots=document.begin_run("Relax all"))
-        self._run(
-            "running", "relax", lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
+        self._supersede()
+        frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
+        spacing = self.plan.spacing
+        request = self._worker.start(
+            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
         )
-        self.total = iterations
+        self._run(Relaxing(request, "relax", self.source, total=iterations))
 
     def take_over(self) -> bool:
-        """Make the dots that a job is relaxing the drawing's, so that they can be edited meanwhile.
+        """Let a person edit the dots of a draft that is being relaxed: it is adopted as it is.
 
         The job goes on with just these dots, as one step of the history, and leaves alone what a
-        person has changed. Returns whether there was such a job.
+        person has changed. Returns whether there was such a draft.
         """
-        plan, reference, phase = self.running_plan, self.reference, self.phase
-        relaxes = self.position_mm is not None and self.stage in ("relax", "tone")
-        if self._request is None or plan is None or reference is None or not relaxes:
+        making, document = self.activity, self.document
+        if not (isinstance(making, Making) and making.can_be_taken_over):
             return False
-        n_done = self.done if self.stage == "relax" else plan.iterations
-        self._keep_dots()
-        assert self.document is not None
-        dots = self.document.begin_run("Settle")
-        place, radius = dots.position_mm, dots.radius_mm
-        self._run(phase, "relax", lambda: work.carry_on(reference, plan, place, radius, n_done))
-        self.done, self.total = n_done, plan.iterations
-        if phase == "paused":
+        assert document is not None
+        reference, style = document.drawing.reference, making.style
+        if reference is None:
+            return False
+        n_done = making.done if making.stage == "relax" else style.iterations
+        document.end_draft()
+        dots = document.begin_run("Settle")
+        request = self._worker.start(
+            lambda: work.carry_on(reference, style, dots.position_mm, dots.radius_mm, n_done)
+        )
+        relaxing = Relaxing(
+            request, "relax", making.source, done=n_done, total=style.iterations,
+            is_held=making.is_held,
+        )  # fmt: skip
+        self._run(relaxing)
+        if relaxing.is_held:
             self._worker.pause()
         return True
 
     def fill(self) -> None:
         """Fill the page with dots, as one step."""
-        document = self.document
-        if document is None or self.drawing is None or not self.paintable or document.in_stroke:
+        document, values = self.document, self.filling
+        if document is None or not self.paintable or document.in_stroke:
             self.messages.say("there is no page to fill yet", WARNING)
             return
-        n_dots = fill_drawing(self.drawing, document, self.filling)
-        self.messages.say(f"{n_dots:,} dots added")
+        self._supersede()
+        outline = document.drawing.outlines()[0]
+        request = self._worker.start(lambda: work.fill(outline, values))
+        self._run(Filling(request, "fill", self.source, values.radius_mm))
 
     def undo(self) -> None:
         """Take the last step back; a relaxation that goes on ends and is taken back."""
@@ -199,32 +197,25 @@ class Session:
         if document is not None and self.paintable and not document.in_stroke:
             self._guarded(document.redo)
 
-    def _guarded(self, act: Callable[[], object]) -> None:
-        """Do something; a person's or a file's error is said."""
-        try:
-            act()
-        except StipplerError as error:
-            self.messages.say(str(error), WARNING)
-
     def pause(self) -> None:
         """Hold the job where it is."""
-        if self.phase == "running":
+        if isinstance(self.activity, Job) and not self.activity.is_held:
             self._worker.pause()
-            self.phase = "paused"
+            self.activity.is_held = True
 
     def resume(self) -> None:
         """Let a held job go on."""
-        if self.phase == "paused":
+        if isinstance(self.activity, Job) and self.activity.is_held:
             self._worker.pause(False)
-            self.phase = "running"
+            self.activity.is_held = False
             self._steps.forget()
 
     def stop(self) -> None:
-        """End the job; the dots that are there stay, and become the drawing's."""
-        if self._request is None:
+        """End the job; the dots that are there stay."""
+        if not self.busy:
             return
         self.poll()
-        if self._request is not None:
+        if self.busy:
             self._worker.stop()
             self._end("stopped")
             self.messages.say("stopped; the dots that are there stay")
@@ -243,15 +234,14 @@ class Session:
         if self.exporting:
             self.messages.say("the last export is still being written", WARNING)
             return
-        if self.drawing is None:
+        if self.document is None:
             self.messages.say("there is no drawing to export yet", WARNING)
             return
         if not self.n_dots:
             self.messages.say("there are no dots to export", WARNING)
             return
-        shown = self.document if self.position_mm is None else None
         inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self._snapshot(self.drawing), path, dpi, shown, inputs)
+        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
 
     # --- what the workers did ---------------------------------------------------------------
 
@@ -263,20 +253,22 @@ class Session:
         return self.exports.poll() or changed
 
     def apply(self, update: Update[Work]) -> bool:
-        """Take a job's update; that of an old request changes nothing and returns False."""
-        if update.request_id != self._request:
+        """Take a job's update; that of an old request changes nothing and returns False.
+
+        Where it cannot be taken the job ends, and that is said.
+        """
+        job = self.activity
+        if not isinstance(job, Job) or update.request_id != job.request:
             return False
-        if update.result is not None:
-            self._take(update.result)
-        if update.ended == "finished":
-            is_new = self.position_mm is not None or self.source is None
-            self._end("done")
-            if is_new:
-                self._report()
-        elif update.ended == "stopped":
-            self._end("stopped")
-        elif update.ended == "failed":
-            self._end("failed")
+        try:
+            if update.result is not None:
+                self._take(job, update.result)
+            if update.ended:
+                self._end({"finished": "done"}.get(update.ended, update.ended))
+        except Exception as error:  # noqa: BLE001 - the job ends; the drawing and the editor live on
+            self._give_up(error)
+            return True
+        if update.ended == "failed":
             failure = update.failure
             self.messages.say(str(failure), ERROR, failure.__cause__ if failure else None)
         return True
@@ -284,9 +276,43 @@ class Session:
     # --- what there is to show --------------------------------------------------------------
 
     @property
+    def drawing(self) -> Drawing | None:
+        """The open drawing; only its document changes it."""
+        return self.document.drawing if self.document is not None else None
+
+    @property
+    def source(self) -> Source | None:
+        """The picture that is open, as the drawing takes it; one never read never gets here."""
+        if self._read is None or self.reference is None:
+            return None
+        return replace(self._read, adjustment=self.reference.adjustment)
+
+    @property
     def busy(self) -> bool:
         """Whether a job runs or is held."""
-        return self._request is not None
+        return isinstance(self.activity, Job)
+
+    @property
+    def phase(self) -> Phase:
+        """How the work stands, in a word."""
+        if isinstance(self.activity, Job):
+            return "paused" if self.activity.is_held else "running"
+        return self.activity.outcome if self.document is not None else "empty"  # type: ignore[return-value]
+
+    @property
+    def stage(self) -> str:
+        """What the job is at; empty without one."""
+        return self.activity.stage if isinstance(self.activity, Job) else ""
+
+    @property
+    def done(self) -> int:
+        """How much of its stage the job has done."""
+        return self.activity.done if isinstance(self.activity, Job) else 0
+
+    @property
+    def total(self) -> int:
+        """How much there is to do in this stage; 0 if it is not known."""
+        return self.activity.total if isinstance(self.activity, Job) else 0
 
     @property
     def exporting(self) -> bool:
@@ -307,18 +333,12 @@ class Session:
     @property
     def relaxing(self) -> bool:
         """Whether the job that runs moves the drawing's own dots."""
-        return self.busy and self.document is not None and self.document.in_run
+        return isinstance(self.activity, Relaxing)
 
     @property
     def paintable(self) -> bool:
         """Whether the dots can be edited now: they are there, and no job makes new ones."""
-        return self.document is not None and (not self.busy or self.relaxing)
-
-    @property
-    def pen(self) -> str:
-        """The pen that draws the dots of a job that makes new ones; empty without such a job."""
-        making = self.position_mm is not None and self.running_plan is not None
-        return self.running_plan.pen if making and self.running_plan else ""
+        return self.document is not None and isinstance(self.activity, Idle | Relaxing)
 
     @property
     def steps_per_s(self) -> float:
@@ -328,161 +348,113 @@ class Session:
     @property
     def n_dots(self) -> int:
         """How many dots there are to show."""
-        if self.position_mm is not None:
-            return len(self.position_mm)
         return len(self.document.dots) if self.document is not None else 0
 
     @property
     def reference(self) -> Reference | None:
         """The open picture's darkness."""
-        return self.drawing.reference if self.drawing else None
+        return self.drawing.reference if self.drawing is not None else None
 
     @property
     def name(self) -> str:
         """File name of the picture that is open or being opened."""
-        source = self._asked if self._request is not None and self._asked else self.source
-        return shown(source.path.name) if source else "Untitled" if self.drawing else ""
+        source = self._asked
+        return (
+            shown(source.path.name) if source else "Untitled" if self.document is not None else ""
+        )
 
     @property
     def outdated(self) -> bool:
         """Whether the dots at hand were made with other values than the panels show."""
-        asked = self._asked if self._request is not None else self.source
-        return asked is not None and (
-            asked != self._as_wanted(asked) or self.running_plan != self.plan
-        )
+        asked, job = self._asked, self.activity
+        if asked is None:
+            return False
+        style = job.style if isinstance(job, Opening | Making) else self._style
+        return asked != self._as_wanted(asked) or style != self.plan
 
     # --- inside -----------------------------------------------------------------------------
+
+    @property
+    def _asked(self) -> Source | None:
+        """The picture of the job that runs, or else the one that is open."""
+        job = self.activity
+        if isinstance(job, Opening | Making | Relaxing | Filling) and job.source is not None:
+            return job.source
+        return None if isinstance(job, Opening) else self.source
+
+    @property
+    def _style(self) -> Style | None:
+        return self.drawing.style_of(0) if self.drawing is not None else None
 
     def _as_wanted(self, source: Source) -> Source:
         return replace(source, tone=self.tone, width_mm=self.width_mm, adjustment=self.adjustment)
 
     def _begin(self, source: Source) -> None:
-        self._end_run()
-        known = self.reference if source.is_read_as(self.source) else None
-        plan, stipple = self.plan, self._stipple
-        self._page, self._asked, self.running_plan = None, source, plan
-        first = work.READ if known is None else "first dots"
-        self._run("running", first, lambda: stipple(source, plan, known))
+        self._supersede()
+        known = self.reference if source.is_read_as(self._read) else None
+        style, stipple = self.plan, self._stipple
+        request = self._worker.start(lambda: stipple(source, style, known))
+        if known is None:
+            self._run(Opening(request, work.READ, source, style))
+        else:
+            self._run(Making(request, "first dots", source, style))
 
-    def _run(self, phase: Phase, stage: str, job: Callable[[], Iterator[Work]]) -> None:
-        self._request = self._worker.start(job)
-        self.phase, self.stage, self.done, self.total = phase, stage, 0, 0
-        self._last = None
+    def _run(self, job: Job) -> None:
+        self.activity = job  # type: ignore[assignment]
         self._steps = StepRate()
 
-    def _end_run(self) -> None:
-        if self.document is not None:
-            self.document.end_run()
+    def _supersede(self) -> None:
+        """End what goes on, since the worker's next job takes its place."""
+        if isinstance(self.activity, Job) and not isinstance(self.activity, Making):
+            self._end("stopped")  # what is being made is shown until there are other dots
 
-    def _take(self, result: Work) -> None:
-        self.stage, self.done, self.total = result.stage, result.done, result.total
-        if result.reference is not None and result.reference is not self.reference:
-            self._adopt(result.reference)
-        if result.progress is not None:
-            self._last = result.progress
-            self.position_mm, self.radius_mm = (
-                result.progress.position_mm,
-                result.progress.radius_mm,
-            )
-            self.revision += 1
-        if result.moved_mm is not None and self.document is not None:
-            self.document.merge(result.moved_mm)
-            if result.radius_mm is not None:
-                self.document.merge_radii(result.radius_mm)
+    def _take(self, job: Job, result: Work) -> None:
+        self.activity = job.take(self, result)
         if result.stage == "relax":
             self._steps.note(self._clock(), result.done)
 
-    def _adopt(self, reference: Reference) -> None:
-        from stippler.drawing.drawing import Page
+    def _end(self, outcome: str) -> None:
+        job, self.activity = self.activity, Idle(outcome)
+        if isinstance(job, Job):
+            job.end(self, outcome)
+        if self.document is not None:
+            self.document.end_draft()  # that of a job before, which this one was to replace
 
-        assert self._asked is not None
-        if self.drawing is not None and self._asked.is_read_as(self.source):
-            self._set_reference(reference)  # adjusted anew; page, dots and history stay
-        else:
-            self._open_page(Page(reference.width_mm, reference.height_mm), reference)
-            if self.source is None or self.source.path != self._asked.path:
-                self.adjustment = self._asked.adjustment
-        self.source = self._asked
+    def _give_up(self, error: Exception) -> None:
+        """End the job whose result could not be taken; the dots that are there stay."""
+        self._worker.stop()
+        job, self.activity = self.activity, Idle("failed")
+        try:
+            if isinstance(job, Job):
+                job.end(self, "failed")
+        except Exception as another:  # noqa: BLE001 - then the run is dropped as it is
+            error.add_note(f"and its end failed: {another}")
+        what = str(error).strip().partition("\n")[0][:120]
+        text = f"a result could not be taken ({type(error).__name__}: {what}); the work has ended"
+        self.messages.say(text, ERROR, error)
 
-    def _set_reference(self, reference: Reference) -> None:
-        assert self.drawing is not None
-        if self.document is None:
-            self.drawing.reference = reference
-        else:
-            self.document.begin("Adjust the picture")
-            self.document.set("reference", 0, reference)
-            self.document.commit(of_job=True)
-        self.revision += 1
-
-    def _open_page(self, page: Page, reference: Reference | None) -> None:
+    def open_page(self, page: Page, source: Source | None, reference: Reference | None) -> None:
+        """Begin another drawing."""
         from stippler.drawing.drawing import Drawing
+
+        drawing = Drawing.blank(page, self.plan)
+        drawing.reference = reference
+        if source is not None and (self._read is None or self._read.path != source.path):
+            self.adjustment = source.adjustment
+        self._open(drawing, source)
+
+    def _open(self, drawing: Drawing, source: Source | None) -> None:
+        from stippler.drawing.document import Document
 
         if self.document is not None:
             self.document.history.close()
-        self.drawing = Drawing.blank(page)
-        self.drawing.reference = reference
-        self.document = self.position_mm = self.radius_mm = None
+        self.document, self._read = Document(drawing), source
         self.exports.begin_drawing()
         self.revision += 1
 
-    def _end(self, phase: Phase) -> None:
-        self._request, self.phase = None, phase
-        if self._page is not None and phase == "done":
-            self._open_page(self._page, None)
-            self.source = None
-        self._page = None
-        if self.drawing is None:
-            self.phase = "empty"
-        self._end_run()
-        self._keep_dots()
-
-    def _keep_dots(self) -> None:
-        """Make the dots that are shown the drawing's; replacing others is a step of its history."""
-        if self.drawing is None:
-            return
-        import numpy as np
-
-        from stippler.drawing.document import Document
-        from stippler.drawing.dots import Dots
-
-        if self.position_mm is not None and self.radius_mm is not None:
-            made = self._drawn(Dots.round(self.position_mm, self.radius_mm))
-            if self.document is None:
-                self.drawing.dots = made
-            else:
-                self.document.begin("Stipple")
-                self.document.remove(np.arange(len(self.document.dots)))
-                self.document.insert(made)
-                self.document.commit(of_job=True)
-        self.position_mm = self.radius_mm = None
-        if self.document is None:
-            self.document = Document(self.drawing)
-        self.revision += 1
-
-    def _snapshot(self, drawing: Drawing) -> Drawing:
-        """Copy the drawing as it looks now, in the midst of a job too."""
-        if self.position_mm is not None and self.radius_mm is not None:
-            from stippler.drawing.dots import Dots
-
-            made = self._drawn(Dots.round(self.position_mm, self.radius_mm))
-            return replace(drawing, dots=made)
-        return work.frozen(drawing)
-
-    def _drawn(self, dots: Dots) -> Dots:
-        """Return dots as the plan's pen draws them."""
-        from stippler.drawing.pens import pen_named
-
-        return pen_named(self.running_plan.pen).drawn(dots) if self.running_plan else dots
-
-    def _report(self) -> None:
-        """Say what has been drawn, and what it falls short of."""
-        if self.source is None:
-            return
-        from stippler.stippling.stipple import notes_on
-
-        self.messages.say(f"{self.n_dots:,} dots drawn")
-        notes = notes_on(self._last) if self._last is not None else ()
-        if notes:
-            self.messages.say("; ".join(notes), WARNING)
-        elif not self.n_dots:
-            self.messages.say("the picture is all white: a drawing without dots", WARNING)
+    def _guarded(self, act: Callable[[], object]) -> None:
+        """Do something; a person's or a file's error is said."""
+        try:
+            act()
+        except StipplerError as error:
+            self.messages.say(str(error), WARNING)

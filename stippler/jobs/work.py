@@ -10,10 +10,10 @@ import re
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.errors import StipplerError
@@ -21,9 +21,11 @@ from stippler.errors import StipplerError
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+    from shapely.geometry import MultiPolygon, Polygon
 
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
+    from stippler.stippling.fill import Filling
     from stippler.stippling.plan import Plan
     from stippler.stippling.stipple import Progress
 
@@ -63,6 +65,8 @@ class Work:
         Where a relaxation of the drawing's own dots has brought them.
     radius_mm : (n,) float32 or None
         What their radii are to be.
+    points_mm : (n, 2) float64 or None
+        Where an area is to have more dots.
     """
 
     stage: str
@@ -72,6 +76,7 @@ class Work:
     progress: Progress | None = None
     moved_mm: NDArray[np.float64] | None = None
     radius_mm: NDArray[np.float32] | None = None
+    points_mm: NDArray[np.float64] | None = None
 
 
 def stipple_picture(
@@ -111,8 +116,13 @@ def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
     yield Work(PREPARE, 1, 1)
 
 
-def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Iterator[Work]:
-    """Relax the free dots of a drawing that nobody else changes, each within its area."""
+def relax_drawing(
+    drawing: Drawing, iterations: int, *, weighted: bool, spacing: str = "even"
+) -> Iterator[Work]:
+    """Relax the free dots of a drawing that nobody else changes, each within its area.
+
+    Spaced evenly by the tone they keep it: see `stippler.stippling.relax_all`.
+    """
     yield Work("relax", 0, iterations)
     import numpy as np
 
@@ -121,17 +131,26 @@ def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Itera
 
     dots, reference = drawing.dots, drawing.reference
     used, shape_of_dot = np.unique(dots.area, return_inverse=True)
+    outlines = [drawing.areas[int(k)].outline_mm for k in used]
+    if spacing == "even" and (weighted or reference is None):
+        from stippler.stippling.relax_all import relaxed_all
+
+        run = relaxed_all(
+            dots.position_mm, dots.radius_mm, outlines, dots.fixed, shape_of_dot, reference,
+            iterations,
+        )  # fmt: skip
+        for k, (moved, sizes) in enumerate(run):
+            done = min(k + 1, iterations)
+            yield Work("relax", done, iterations, moved_mm=moved, radius_mm=sizes)
+        return
     density = None
     if weighted and reference is not None:
         # dots settle at the root of their weight
         density = DensityField(np.square(reference.darkness), reference.pixel_mm)
     engine = Relaxation(
-        dots.position_mm,
-        [drawing.areas[int(k)].outline_mm for k in used],
-        dots.fixed,
-        shape_of_dot,
-        density,
-    )
+        dots.position_mm, outlines, dots.fixed, shape_of_dot, density,
+        method="lloyd" if spacing == "even" else spacing,
+    )  # fmt: skip
     for k in range(iterations):
         engine.step()
         yield Work("relax", k + 1, iterations, moved_mm=engine.points)
@@ -151,6 +170,15 @@ def carry_on(
     for made in carry_on(reference, plan, position_mm, radius_mm, n_done):
         solved = made.radius_mm if made.stage == "done" else None
         yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
+
+
+def fill(outline: Polygon | MultiPolygon, values: Filling) -> Iterator[Work]:
+    """Find places for dots in an area that has no picture."""
+    yield Work("fill")
+    from stippler.stippling.initial_points import fill_area
+
+    points = fill_area(outline, values.n_dots, values.arrangement, values.seed)
+    yield Work("fill", 1, 1, points_mm=points)
 
 
 def _prepared_kernels() -> Iterator[tuple[int, int]]:
@@ -189,16 +217,33 @@ def _ready(lines: list[str]) -> tuple[int, int]:
     return (int(found[1]), int(found[2])) if found else (0, 0)
 
 
+@dataclass(slots=True)
+class Writing:
+    """A file being written, for two threads: how far it is, and whether a person gave it up."""
+
+    n_bytes: int = 0
+    given_up: bool = False
+
+
 def export_drawing(
-    drawing: Drawing, path: Path, dpi: float, inputs: tuple[Path, ...] = ()
+    drawing: Drawing,
+    path: Path,
+    options: Mapping[str, Any],
+    inputs: tuple[Path, ...] = (),
+    writing: Writing | None = None,
 ) -> Iterator[Path]:
-    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there."""
+    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there.
+
+    A worker that closes lets it be finished; only `writing` gives it up, at its next piece.
+    """
     from stippler.export import save
 
-    save(drawing, path, dpi=dpi, inputs=inputs)
+    state = writing or Writing()
+
+    def show(n_bytes: int) -> None:
+        state.n_bytes = n_bytes
+        if state.given_up:
+            raise StipplerError("was given up", path.name, "nothing was written")
+
+    save(drawing, path, inputs=inputs, show=show, **options)
     yield path
-
-
-def frozen(drawing: Drawing) -> Drawing:
-    """Copy what an export reads, so that the drawing may change meanwhile."""
-    return drawing.snapshot()

@@ -87,14 +87,6 @@ class Scene:
         self._selected_ids = selected
         self._document, self._cursor = document, changed.cursor
 
-    def show_made(
-        self, page_mm: tuple[float, float], position_mm: ArrayLike, radius_mm: ArrayLike
-    ) -> None:
-        """Show dots that are no document's yet: round ones, whatever was there before."""
-        if self._document is not None or self.page_mm != page_mm:
-            self.clear(*page_mm)
-        self.set_positions(position_mm, radius_mm)
-
     def clear(self, width_mm: float, height_mm: float) -> None:
         """Show an empty page."""
         self._document = None

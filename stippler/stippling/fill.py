@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from stippler.drawing.drawing import MAX_PAGE_MM
+from stippler.drawing.page import MAX_PAGE_MM
 from stippler.errors import ParameterError
 from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
-
-if TYPE_CHECKING:
-    from stippler.drawing.document import Document
-    from stippler.drawing.drawing import Drawing
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,16 +42,3 @@ class Filling:
             )
         if not 0 <= self.seed < 2**63:
             raise ParameterError(f"{self.seed} is no seed", "fill", "give 0 or more")
-
-
-def fill_drawing(drawing: Drawing, document: Document, filling: Filling, area: int = 0) -> int:
-    """Fill an area of a drawing, as one edit; return how many dots were added."""
-    from stippler.drawing.dots import Dots
-    from stippler.stippling.initial_points import fill_area
-
-    outline = drawing.areas[area].outline_mm
-    points = fill_area(outline, filling.n_dots, filling.arrangement, filling.seed)
-    document.begin("Fill")
-    document.insert(Dots.round(points, filling.radius_mm, area=area))
-    document.commit()
-    return len(points)

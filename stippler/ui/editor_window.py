@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-from stippler.drawing.pens import pen_named
 from stippler.drawing.preview import Preview
 from stippler.editor.batches import parts_of
 from stippler.editor.events import (
@@ -137,7 +136,7 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
-        if self._poll():
+        if self.session.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -149,18 +148,6 @@ class Editor:
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
-        return True
-
-    def _poll(self) -> bool:
-        """Take the workers' results; one that cannot be taken ends the job, not the editor."""
-        try:
-            return self.session.poll()
-        except Exception as error:  # noqa: BLE001 - the drawing as it is lives on
-            self._report(error, "taking a result")
-        try:
-            self.session.stop()
-        except Exception as error:  # noqa: BLE001 - told; the job is let go of
-            self._report(error, "ending the work")
         return True
 
     def _take_unseen(self, events: list[Event]) -> None:
@@ -312,8 +299,6 @@ class Editor:
 
     def _previewed(self) -> Preview | None:
         """Return the change that is held in a panel, or that the brush or the plan will make."""
-        if self.session.pen:
-            return Preview(pen_named(self.session.pen).change)
         hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None

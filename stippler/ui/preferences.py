@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 FILE, LAYOUT_FILE = "preferences.json", "layout.ini"
 SCALES = (0.75, 3.0)
 N_RECENT = 10
-TONES = ("linear", "perceptual")
+TONES = ("illustration", "linear", "perceptual")
 _VERSION = 1
 _THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 _PLAIN = (bool, int, float, str)

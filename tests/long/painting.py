@@ -108,7 +108,7 @@ def main(root: Path, seed: int) -> None:
     document, keeper = Document(first_drawing()), Keeper(root)
     start = document.drawing.snapshot()
     keeper.begin(lambda: members_of(start), "ear", None, "stippler")
-    log = EditLog(keeper.append)
+    log = EditLog(keeper.append, document)
     document.follow(log.take)
     say = sys.stdout
     say.write(f"0 {digest(document.drawing)}\n")

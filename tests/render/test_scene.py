@@ -11,6 +11,7 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import FIXED, Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.render.dot_buffer import DotBuffer
 from stippler.render.scene import Scene
 
@@ -104,7 +105,7 @@ class SceneMachine(RuleBasedStateMachine):
     @precondition(lambda self: not self.document.in_draft)
     @rule()
     def begin_draft(self):
-        self.document.begin_draft("Make", 0, "technical-pen")
+        self.document.begin_draft("Make", 0, Style())
 
     @precondition(lambda self: self.document.in_draft)
     @rule(n=st.integers(0, 40), seed=st.integers(0, 99))
@@ -128,11 +129,14 @@ def test_restarting_shows_round_free_dots_whatever_was_there(ctx) -> None:
     document, scene, made = document_of(40), Scene(ctx), Scene(ctx)
     scene.sync(document)
     place = document.dots.position_mm[::-1].copy()
-    radius = np.full(40, 0.2, np.float32)
-    scene.show_made((20.0, 20.0), place, radius)
-    made.show_made((20.0, 20.0), place, radius)
+    document.begin_draft("Stipple", 0, Style())
+    document.draft(place, np.full(40, 0.2, np.float32))
+    scene.sync(document)
+    made.set_page(20.0, 20.0)
+    made.set_dots(Dots.round(place, 0.2))
     assert np.array_equal(by_row(scene.dots), by_row(made.dots))
     assert not scene.dots.has_flags
+    document.end_draft()
     scene.sync(document)
     assert_like_a_fresh_one(ctx, scene, document, NO_IDS)
     scene.release()

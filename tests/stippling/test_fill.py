@@ -8,9 +8,19 @@ from shapely.geometry import box
 
 from stippler.drawing.area import Area
 from stippler.drawing.document import Document
+from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import ParameterError
-from stippler.stippling.fill import Filling, fill_drawing
+from stippler.jobs.work import fill
+from stippler.stippling.fill import Filling
+
+
+def added(document: Document, filling: Filling, area: int) -> int:
+    *_, made = fill(document.drawing.outlines()[area], filling)
+    document.begin("Fill")
+    rows = document.insert(Dots.round(made.points_mm, filling.radius_mm))
+    document.commit()
+    return len(rows)
 
 
 @pytest.mark.parametrize("arrangement", ["hexagonal", "random"])
@@ -19,8 +29,7 @@ def test_an_area_is_filled_in_one_step(arrangement) -> None:
     drawing.areas[1] = Area("corner", box(0, 0, 20, 10))
     document = Document(drawing)
     filling = Filling(200, arrangement, 0.25, seed=3)
-    first = fill_drawing(drawing, document, filling)
-    second = fill_drawing(drawing, document, filling, area=1)
+    first, second = (added(document, filling, area) for area in (0, 1))
     dots = document.dots
     assert len(dots) == first + second
     assert abs(first - 200) <= 8

@@ -16,7 +16,6 @@ def test_a_new_page_is_filled_and_emptied_again(desk) -> None:
     desk.host.click("Random")
     desk.host.fill("Dot radius", "0.8")
     desk.host.click("Fill the page")
-    desk.host.settle()
-    assert session.n_dots == 500
+    desk.host.until(lambda: session.n_dots == 500 and not session.busy, "the dots")
     session.undo()
     assert session.n_dots == 0

@@ -117,11 +117,12 @@ def test_a_picture_is_opened_stippled_and_becomes_a_drawing(stage: Stage) -> Non
     assert session.drawing is not None
     assert (session.drawing.page.width_mm, session.drawing.page.height_mm) == (100.0, 50.0)
     assert session.reference is picture
-    before = session.revision
+    before = session.document.revision
     stage.tell(Work("relax", 3, 20, picture, dots(5)))
-    assert session.revision > before
+    assert session.document.revision > before
     assert (session.n_dots, session.stage, session.done, session.total) == (5, "relax", 3, 20)
-    assert len(session.drawing.dots) == 0  # not before the job has come to an end
+    assert len(session.drawing.dots) == 5  # a draft is in the drawing like all dots
+    assert not session.paintable
     stage.tell(Work("done", 1, 1, picture, dots(7, "done")), "finished")
     assert (session.phase, session.busy, len(session.drawing.dots)) == ("done", False, 7)
     assert session.messages.log[-1].text == "7 dots drawn"
@@ -141,13 +142,14 @@ def test_an_adjusted_picture_makes_new_dots_as_a_step_that_can_be_undone(stage: 
     adjusted = picture.adjusted(lighter)
     stage.tell(Work("done", 1, 1, adjusted, dots(7, "done")), "finished")
     assert session.document is document
-    assert session.reference is adjusted
     assert document is not None
-    assert document.drawing.reference is adjusted  # as brushes see it
+    assert document.drawing.reference is session.reference is adjusted  # as brushes see it
     assert not session.outdated
     assert session.n_dots == 7
     session.undo()
     assert session.n_dots == 5
+    assert session.reference == picture  # undoing all gives what was there at first
+    assert session.outdated
 
 
 def test_adjustments_belong_to_their_picture(stage: Stage) -> None:
@@ -458,3 +460,65 @@ def test_an_export_that_ends_when_another_drawing_is_open_is_not_that_drawings(
     session.poll()
     assert session.exports.path is None
     assert session.unsaved
+
+
+# --- results that cannot be taken, restarts, and the end of a run ---------------------------
+
+
+def test_a_result_that_cannot_be_taken_ends_the_work_and_the_drawing_lives(stage: Stage) -> None:
+    opened(stage, 5)
+    session = stage.session
+    before = session.document.dots.position_mm.copy()
+    session.relax(9, weighted=True)
+    stage.tell(Work("relax", 1, 9, moved_mm=before + 0.5))
+    assert stage.tell(Work("relax", 2, 9, moved_mm=np.zeros((99, 2))))  # of no run of ours
+    assert (session.busy, session.phase) == (False, "failed")
+    assert "a result could not be taken" in session.messages.log[-1].text
+    assert session.messages.log[-1].level == ERROR
+    assert session.paintable
+    assert np.array_equal(session.document.dots.position_mm, before + 0.5)  # what came before stays
+    session.undo()
+    assert np.array_equal(session.document.dots.position_mm, before)
+
+
+def test_a_restart_shows_other_dots_at_once_and_leaves_one_step(stage: Stage) -> None:
+    opened(stage, 5)
+    session, document = stage.session, stage.session.document
+    document.begin("Fix")
+    document.change("constraint", np.arange(5), np.ones(5, np.int8))
+    document.commit()
+    for shift in (1.0, 2.0):  # begun, and begun again before the end
+        session.edit_plan(seed=int(shift))
+        session.start()
+        cursor = document.changes.now
+        stage.tell(Work("relax", 4, 20, session.reference, dots(5, shift=shift)))
+        assert document.changes.since(cursor).rows is None  # all of them, as many as before
+        assert not document.dots.fixed.any()
+    stage.tell(Work("done", 1, 1, session.reference, dots(5, "done", shift=3.0)), "finished")
+    assert [step.label for step in document.history.steps] == ["Fix", "Stipple"]
+    session.undo()
+    assert document.dots.fixed.all()
+    assert session.drawing.style_of(0) == Plan(n_dots=10)
+
+
+def test_a_picture_that_fails_while_dots_are_made_keeps_those(stage: Stage) -> None:
+    opened(stage, 5)
+    session = stage.session
+    session.start()
+    stage.tell(Work("relax", 4, 20, session.reference, dots(7)))
+    session.open(Path("bad.png"))
+    assert session.n_dots == 7
+    stage.tell(None, "failed", failure=PictureError("is no picture"))
+    assert (session.n_dots, session.name, session.paintable) == (7, "shell.png", True)
+    assert not session.document.in_draft
+
+
+def test_all_dots_are_looked_at_again_when_a_run_ends(stage: Stage) -> None:
+    opened(stage, 5)
+    session = stage.session
+    session.relax(1, weighted=True)
+    moved = session.document.dots.position_mm + 0.01
+    stage.tell(Work("relax", 1, 1, moved_mm=moved))
+    cursor = session.document.changes.now
+    stage.tell(None, "finished")
+    assert session.document.changes.since(cursor).rows is None

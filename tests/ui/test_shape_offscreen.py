@@ -170,11 +170,15 @@ def test_dots_turn_along_the_picture(shaping) -> None:
 def test_a_drawing_is_made_with_a_pen_and_seen_so_meanwhile(shaping) -> None:
     session, editor = shaping.app.session, shaping.app.editor
     first = session.document.dots.copy()
-    assert session.edit_plan(pen="stick")
+    n_steps = session.plan.iterations
+    assert session.edit_plan(pen="stick", iterations=100_000)  # however quick, it is under way
     session.start()
-    shaping.host.until(lambda: session.position_mm is not None, "dots")
-    shaping.host.until(lambda: editor._preview is not None or not session.busy, "a frame")
-    assert not session.busy or editor._preview.change.roughens
+    shaping.host.until(lambda: session.document.in_draft and session.n_dots > 0, "dots")
+    assert session.document.dots.roughness.min() > 0.5
+    shaping.host.settle()
+    assert editor.canvas._made.scene.dots.is_rough
+    session.edit_plan(iterations=n_steps)
+    session.start()
     shaping.host.until(lambda: not session.busy, "the drawing")
     dots = session.document.dots
     assert dots.roughness.min() > 0.5

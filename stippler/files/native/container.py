@@ -31,7 +31,7 @@ _LONGEST_NAME = 200
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)  # the same drawing gives the same bytes
 _PACKED_FROM = 256  # bytes; less is not worth it
 _SAMPLE = 1 << 14
-_WORTH = 0.9  # of its size is what a sample has to shrink to
+_WORTH = 0.7  # of its size is what a sample has to shrink to
 _DO = "open a backup of the drawing"
 
 Members = Mapping[str, bytes]
@@ -85,6 +85,16 @@ def _shrinks(data: bytes) -> bool:
     middle = max(len(data) // 2 - _SAMPLE // 2, 0)
     sample = data[middle : middle + _SAMPLE]
     return len(zlib.compress(sample, 1)) < _WORTH * len(sample)
+
+
+def is_container(path: Path) -> bool:
+    """Return whether a file begins as a drawing does; False where it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(38 + len(MIME))
+    except OSError:
+        return False
+    return head[:4] == b"PK\3\4" and head[38:] == MIME.encode()
 
 
 def read_container(path: str | Path, limits: Limits = DEFAULT_LIMITS) -> dict[str, bytes]:

@@ -6,6 +6,7 @@ and given back when the drawing is saved.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -24,8 +25,11 @@ from stippler.errors import DrawingFileError, StipplerError
 from stippler.files.native import arrays, structure
 from stippler.files.native.container import Members, read_container, write_container
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
+from stippler.files.native.thumbnail import MEMBER, thumbnail_png
+from stippler.version import VERSION
 
 ENDING = ".stipple"
+PROGRAM = f"stippler {VERSION}"
 STRUCTURE = "document.json"
 
 ReadPicture = Callable[[bytes, str, str], Picture]
@@ -41,24 +45,30 @@ _DEFAULTS: dict[str, Any] = {
 }  # fmt: skip
 
 
-def save_drawing(
-    drawing: Drawing, path: str | Path, program: str, more: Members | None = None
-) -> None:
+def save_drawing(drawing: Drawing, path: str | Path, more: Members | None = None) -> None:
     """Write a drawing to its own kind of file, whole or not at all.
 
     Parameters
     ----------
     more : mapping of name to bytes, optional
-        Members beside the drawing's: a thumbnail, how it was looked at, its history.
+        Members beside the drawing's: how it was looked at, its history.
 
     Raises
     ------
     OutputError
         If the file cannot be written; what stood there stays.
     """
-    members = members_of(drawing, more)
+    data = file_bytes(drawing, more)
     with replacing(path) as stream:
-        write_container(stream, members, program)
+        stream.write(data)
+
+
+def file_bytes(drawing: Drawing, more: Members | None = None) -> bytes:
+    """Return a drawing's file, with its thumbnail."""
+    stream = io.BytesIO()
+    thumbnail = {MEMBER: thumbnail_png(drawing)}
+    write_container(stream, {**members_of(drawing, more), **thumbnail}, PROGRAM)
+    return stream.getvalue()
 
 
 def open_drawing(
@@ -324,7 +334,7 @@ def _check_dots(dots: Dots, tables: Mapping[str, Mapping[int, Any]], where: str)
             if not fine.all():
                 k = int(np.flatnonzero(~fine)[0])
                 raise DrawingFileError(f"its {what}", f"{where}, dot {k}", _DO)
-    if len(np.unique(dots.id)) < len(dots):
+    if (np.diff(np.sort(dots.id)) == 0).any():
         raise DrawingFileError("an id stands twice", where, _DO)
 
 

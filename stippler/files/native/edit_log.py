@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from stippler.drawing.document import Document
 from stippler.drawing.edit import Edit
-from stippler.drawing.log import ENDED, OPENED, Entry
+from stippler.drawing.log import ENDED, OPENED, STEP, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
 from stippler.files.native import arrays
@@ -26,14 +27,15 @@ class EditLog:
     ----------
     append : callable
         Takes a record, as a function that makes its bytes in another thread.
-    known : iterable of str
-        Digests of the pictures that the drawing which the journal begins with holds.
+    document : Document
+        As it is when the journal begins; steps of its history from before are not in it.
     """
 
-    def __init__(
-        self, append: Callable[[Callable[[], bytes]], None], known: Iterable[str] = ()
-    ) -> None:
-        self._append, self._known = append, set(known)
+    def __init__(self, append: Callable[[Callable[[], bytes]], None], document: Document) -> None:
+        reference = document.drawing.reference
+        self._append = append
+        self._known = {reference.source.digest} if reference is not None else set()
+        self._first = document.history.n_done  # step of the document that is the journal's first
 
     def take(self, entry: Entry) -> None:
         """Write down what has happened; returns at once."""
@@ -42,12 +44,20 @@ class EditLog:
                 if digest not in self._known:
                     self._known.add(digest)
                     self._append(partial(_of_picture, picture))
-        self._append(partial(of_entry, entry))
+        if entry.what in (STEP, OPENED):
+            self._first = min(self._first, entry.n_done - 1)
+        n_done = max(entry.n_done - self._first, 0)
+        self._append(partial(of_entry, replace(entry, n_done=n_done)))
 
 
 def of_entry(entry: Entry) -> bytes:
     """Return a record."""
-    head = {"what": entry.what, "of_job": entry.of_job, "edit": entry.edit is not None}
+    head = {
+        "what": entry.what,
+        "of_job": entry.of_job,
+        "n_done": entry.n_done,
+        "edit": entry.edit is not None,
+    }
     return arrays.pack(head, dict(entry.edit.arrays()) if entry.edit is not None else {})
 
 
@@ -115,4 +125,7 @@ def _entry(
     if not isinstance(what, str):
         raise DrawingFileError("tells nothing", where)
     edit = Edit.from_arrays(found, pictures) if head.get("edit") is True else None
-    return Entry(what, edit, head.get("of_job") is True)
+    n_done = head.get("n_done", 0)
+    if type(n_done) is not int:
+        raise DrawingFileError("counts no steps", where)
+    return Entry(what, edit, head.get("of_job") is True, n_done)

@@ -2,7 +2,8 @@
 
 Darkness is 1 − luminance, over white where the picture is transparent. Luminance is *linear*
 (what reaches the eye, so ink that covers that share of the paper reflects as much light as the
-picture's pixel) or *perceptual* (sRGB-encoded, the numbers in most files).
+picture's pixel), *perceptual* (sRGB-encoded, the numbers in most files), or perceptual and then
+as an illustrator would draw it (*illustration*, see `stippler.drawing.tone_curve`).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.tone_curve import illustration
 from stippler.errors import ParameterError, PictureError
 from stippler.files.read.light import (
     DEEPEST,
@@ -24,7 +26,7 @@ from stippler.files.read.light import (
 )
 from stippler.files.read.pixels import CHANNELS, Pixels
 
-TONES = ("linear", "perceptual")
+TONES = ("illustration", "linear", "perceptual")
 MAX_FIELD_PIXELS = 16_000_000
 """Larger pictures are averaged down to this: 0.04 mm a pixel on A4, below any pen's dot."""
 
@@ -35,11 +37,16 @@ _OVERSHOOT = 0.01  # of white: what resampling leaves beside 0 and 1 in floats
 def check_tone(tone: str) -> None:
     """Raise `ParameterError` unless it is one of `TONES`."""
     if tone not in TONES:
-        raise ParameterError(f"{tone!r} is no tone", "tone", f"choose {' or '.join(TONES)}")
+        raise ParameterError(
+            f"{tone!r} is no tone", "tone", f"choose {', '.join(TONES[:-1])} or {TONES[-1]}"
+        )
 
 
 def darkness_of_pixels(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[str, ...]]:
     """Turn pixels into darkness, upright, averaged to `MAX_FIELD_PIXELS`; and what to tell."""
+    if tone == "illustration":
+        dark, told = darkness_of_pixels(pixels, "perceptual")
+        return illustration(dark).apply(dark), told
     width, height = pixels.size
     k = min(max(math.ceil(math.sqrt(width * height / MAX_FIELD_PIXELS)), 1), width, height)
     out = np.empty((height // k, width // k), np.float32)

@@ -72,7 +72,7 @@ def told_of(head: bytes) -> tuple[str, str] | None:
     if is_table(head):
         return (
             "is a table of numbers, not a picture",
-            "measure a table of dots by stippler stats; draw from its picture",
+            "name it .csv, and stippler render and stippler stats take it for dots",
         )
     return None
 

@@ -74,8 +74,8 @@ def read_darkness(
     path : path
         PNG, JPEG, TIFF, WebP, BMP, GIF (first frame), JPEG 2000, HEIC or AVIF, by content and not
         by name; see ``docs/pictures.md`` for what its numbers are taken to mean.
-    tone : {"linear", "perceptual"}
-        Whether darkness is of light, or of sRGB's numbers.
+    tone : {"illustration", "linear", "perceptual"}
+        Whether darkness is as an illustrator would draw it, of light, or of sRGB's numbers.
     notes : list of str, optional
         What the person should know of how it was read is added to it.
 

@@ -165,14 +165,8 @@ class Canvas:
         if content == self._uploaded or session.drawing is None:
             return
         self._uploaded = None  # what fails is tried again
-        page = session.drawing.page
-        if session.position_mm is not None and session.radius_mm is not None:
-            size_mm = (page.width_mm, page.height_mm)
-            scene.show_made(size_mm, session.position_mm, session.radius_mm)
-        elif session.document is not None:
-            scene.sync(session.document, selection.ids)
-        else:
-            scene.clear(page.width_mm, page.height_mm)
+        assert session.document is not None
+        scene.sync(session.document, selection.ids)
         self._uploaded = content
 
     def _sized(self, size_px: Size) -> moderngl.Texture:

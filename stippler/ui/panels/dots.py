@@ -9,12 +9,13 @@ from imgui_bundle import imgui
 
 from stippler.drawing.pens import PENS
 from stippler.editor.session import Session
-from stippler.stippling.plan import FIRST_DOTS, GROWTHS, SIZES, STARTS
+from stippler.stippling.plan import FIRST_DOTS, GROWTHS, SIZES, SPACINGS, STARTS
 from stippler.ui.panels.fill import draw_fill
 from stippler.ui.theme import ICON_DICE
 from stippler.ui.widgets import Widgets
 
 _FIRST_DOTS_LABELS = ("Pulse density", "Floyd–Steinberg", "Random", "Hexagonal")
+_SPACING_LABELS = ("Even, without rows", "Lloyd", "Mean of neighbours", "Springs")
 _RADII_MM = (0.02, 2.0)  # what the slider offers; typing takes more
 _USUAL_RANGE_MM = (0.12, 0.24)
 _USUAL_DOTS = 20_000
@@ -76,6 +77,14 @@ def _draw_relaxation(widgets: Widgets, session: Session, changes: dict[str, Any]
         ),
     )
     changes["weighted"] = by_tone == 0
+    spacing = widgets.choice(
+        "Spacing",
+        _SPACING_LABELS,
+        SPACINGS.index(session.plan.spacing),
+        "Even dots come to rest without rows. Lloyd's relaxation alone grows rows, like cloth; "
+        "the last two are the paper's comparisons.",
+    )
+    changes["spacing"] = SPACINGS[spacing]
 
 
 def _draw_pen(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:

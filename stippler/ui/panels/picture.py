@@ -12,8 +12,9 @@ from stippler.editor.session import Session
 from stippler.ui.theme import ICON_NEW, ICON_OPEN, ICON_SAVE
 from stippler.ui.widgets import Widgets
 
-_TONES = ("linear", "perceptual")
+_TONES = ("illustration", "linear", "perceptual")
 _TONE_TIPS = (
+    "As an illustrator would draw it: highlights are paper, deep parts stay just open.",
     "The ink covers as much of the paper as the picture's light is missing: right at arm's length.",
     "The ink follows the numbers in the file: darker, as if each grey value were a share of ink.",
 )
@@ -49,7 +50,10 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
     ):
         commands["file.export_as"].run()
     chosen = widgets.segments(
-        "Tone", ("Linear", "Perceptual"), _TONES.index(session.tone), _TONE_TIPS
+        "Tone",
+        ("Illustration", "Linear", "Perceptual"),
+        _TONES.index(session.tone),
+        _TONE_TIPS,
     )
     session.tone = _TONES[chosen]
     typed = widgets.length(

@@ -19,6 +19,7 @@ _STAGES = {
     "first dots": "first dots",
     "relax": "relaxing",
     "tone": "matching the tone",
+    "fill": "filling",
     "done": "done",
 }
 _OUTCOMES = {"empty": "", "done": "done", "stopped": "stopped", "failed": "failed"}

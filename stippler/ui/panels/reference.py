@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.drawing.adjustment import GAMMA_RANGE, MAX_BRIGHTNESS, NEUTRAL, Adjustment
+from stippler.drawing.adjustment import (
+    GAMMA_RANGE,
+    MAX_BRIGHTNESS,
+    MIN_SPAN,
+    NEUTRAL,
+    Adjustment,
+)
 from stippler.editor.commands import Commands
 from stippler.editor.session import Session
 from stippler.ui.look import Look
+from stippler.ui.panels.tone_histogram import ToneHistogram
 from stippler.ui.widgets import Widgets
+
+_histogram = ToneHistogram()
 
 
 def draw_reference(widgets: Widgets, session: Session, look: Look, commands: Commands) -> None:
@@ -22,6 +31,8 @@ def draw_reference(widgets: Widgets, session: Session, look: Look, commands: Com
         look.opacity = widgets.share("Opacity", look.opacity, "Of the picture under the dots.")
     look.dots_shown = widgets.check("Show dots", look.dots_shown, f"{commands['view.dots'].hint}.")
     before = session.adjustment
+    if session.reference is not None:
+        _histogram.draw(widgets, session.reference, before)
     session.adjustment = _draw_adjustment(widgets, before)
     if session.adjustment != before:
         look.reference_shown = True  # else nothing would be seen to change
@@ -43,6 +54,7 @@ def draw_reference(widgets: Widgets, session: Session, look: Look, commands: Com
 
 
 def _draw_adjustment(widgets: Widgets, now: Adjustment) -> Adjustment:
+    white, black = _draw_points(widgets, now)
     percent = 100.0 * MAX_BRIGHTNESS
     brightness = widgets.slider(
         "Brightness",
@@ -76,4 +88,21 @@ def _draw_adjustment(widgets: Widgets, now: Adjustment) -> Adjustment:
     tip = "Takes the picture as it is."
     if widgets.button("Reset", tip, width=-1.0, enabled=now != NEUTRAL):
         return NEUTRAL
-    return Adjustment(round(brightness) / 100, round(contrast) / 100, round(gamma, 2), invert)
+    return Adjustment(
+        round(brightness) / 100, round(contrast) / 100, round(gamma, 2), invert, white, black
+    )
+
+
+def _draw_points(widgets: Widgets, now: Adjustment) -> tuple[float, float]:
+    """Offer the white and the black point, kept apart."""
+    percent = "%.0f %%"
+    white = widgets.slider(
+        "White from", 100.0 * now.white, 0.0, 95.0, "Lighter tones become bare paper.", percent
+    )
+    black = widgets.slider(
+        "Black from", 100.0 * now.black, 5.0, 100.0, "Darker tones become black.", percent
+    )
+    if round(white) / 100 != now.white:
+        white = min(white, 100.0 * (now.black - MIN_SPAN))
+    black = max(black, white + 100.0 * MIN_SPAN)
+    return round(white) / 100, min(round(black) / 100, 1.0)

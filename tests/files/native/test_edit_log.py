@@ -32,7 +32,7 @@ def kept(seed, n_steps):
     """Paint; return the document, the members that the journal begins with, and its records."""
     document = Document(painting.first_drawing())
     members, made = members_of(document.drawing), []
-    document.follow(EditLog(made.append).take)
+    document.follow(EditLog(made.append, document).take)
     for k, _ in enumerate(painting.paint(document, seed)):
         if k == n_steps:
             break
@@ -64,7 +64,7 @@ def test_replaying_a_journal_gives_the_drawing_and_its_history(seed, n_steps):
 def test_a_journal_cut_anywhere_gives_the_drawing_of_then(seed):
     document = Document(painting.first_drawing())
     members, made, then = members_of(document.drawing), [], [painting.digest(document.drawing)]
-    document.follow(EditLog(made.append).take)
+    document.follow(EditLog(made.append, document).take)
     counts = [0]
     for k, _ in enumerate(painting.paint(document, seed)):
         counts.append(len(made))
@@ -76,6 +76,31 @@ def test_a_journal_cut_anywhere_gives_the_drawing_of_then(seed):
         again = document_of(members)
         assert replay(again, records[:count], picture_of_bytes) == (count, "")
         assert painting.digest(again.drawing) == wanted
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 10_000), st.integers(0, 25), st.integers(0, 40))
+def test_a_journal_that_begins_later_follows_steps_undone_from_before(seed, n_before, n_after):
+    document = Document(painting.first_drawing())
+    made = []
+    for k, _ in enumerate(painting.paint(document, seed)):
+        if k == n_before:
+            document.end_run()
+            members = members_of(document.drawing)
+            document.follow(EditLog(made.append, document).take)
+        if k == n_before + n_after:
+            break
+    document.end_run()
+    again = document_of(members)
+    records = [make() for make in made]
+    assert replay(again, records, picture_of_bytes) == (len(records), "")
+    assert painting.digest(again.drawing) == painting.digest(document.drawing)
+    while again.undo():
+        assert document.undo()
+        assert painting.digest(again.drawing) == painting.digest(document.drawing)
+    while again.redo():
+        assert document.redo()
+        assert painting.digest(again.drawing) == painting.digest(document.drawing)
 
 
 def test_a_record_that_makes_no_sense_ends_the_replay_and_is_told():

@@ -1,0 +1,215 @@
+"""What a session is doing: one of these at a time; each takes results, and ends in an edit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+from stippler.editor.messages import WARNING, Messages
+
+if TYPE_CHECKING:
+    from stippler.drawing.document import Document
+    from stippler.drawing.drawing import Page
+    from stippler.drawing.reference import Reference
+    from stippler.drawing.style import Style
+    from stippler.jobs.work import Source, Work
+    from stippler.stippling.stipple import Progress
+
+
+class Desk(Protocol):
+    """What an activity works on."""
+
+    messages: Messages
+
+    @property
+    def document(self) -> Document | None:
+        """The open drawing."""
+        ...
+
+    def open_page(self, page: Page, source: Source | None, reference: Reference | None) -> None:
+        """Begin another drawing."""
+        ...
+
+
+@dataclass(slots=True)
+class Idle:
+    """No job runs.
+
+    Attributes
+    ----------
+    outcome : {"done", "stopped", "failed"}
+        How the last one ended.
+    """
+
+    outcome: str = "done"
+
+
+@dataclass(slots=True)
+class Job:
+    """A job runs, or is held.
+
+    Attributes
+    ----------
+    request : int
+        By which the worker calls it.
+    stage : str
+        As `Work` tells.
+    done, total : int
+        Of this stage; a total of 0 is unknown.
+    """
+
+    request: int
+    stage: str
+    done: int = field(default=0, kw_only=True)
+    total: int = field(default=0, kw_only=True)
+    is_held: bool = field(default=False, kw_only=True)
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Take a result; return what goes on from there."""
+        raise NotImplementedError
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Keep what there is, as a step of the history."""
+        raise NotImplementedError
+
+    def _note(self, work: Work) -> None:
+        self.stage, self.done, self.total = work.stage, work.done, work.total
+
+
+@dataclass(slots=True)
+class Opening(Job):
+    """A picture is read, to be stippled, or everything is made ready for an empty page.
+
+    Attributes
+    ----------
+    source : Source or None
+        The picture; None is an empty page.
+    """
+
+    source: Source | None
+    style: Style
+    page: Page | None = None
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Open the page as soon as the picture is read, and go on with its dots."""
+        from stippler.drawing.drawing import Page
+
+        self._note(work)
+        picture = work.reference
+        if picture is None or self.source is None:
+            return self
+        desk.open_page(Page(picture.width_mm, picture.height_mm), self.source, picture)
+        making = Making(self.request, self.stage, self.source, self.style)
+        making.is_held = self.is_held
+        return making.take(desk, work)
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Open the empty page; a picture that was not read leaves what was open."""
+        if self.page is not None and outcome == "done":
+            desk.open_page(self.page, None, None)
+
+
+@dataclass(slots=True)
+class Making(Job):
+    """An area's dots are made.
+
+    Attributes
+    ----------
+    source : Source
+        The picture, as it is taken.
+    style : Style
+        What they are asked for with.
+    last : Progress or None
+        What the last result told.
+    """
+
+    source: Source
+    style: Style
+    area: int = 0
+    last: Progress | None = None
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Show the dots."""
+        self._note(work)
+        document, made = desk.document, work.progress
+        if made is not None and document is not None:
+            if self.last is None:
+                document.begin_draft("Stipple", self.area, self.style, work.reference)
+            document.draft(made.position_mm, made.radius_mm)
+            self.last = made
+        return self
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Keep the dots, and say what they fall short of."""
+        if desk.document is None:
+            return
+        desk.document.end_draft()
+        if outcome == "done":
+            _report(desk, len(desk.document.dots), self.last)
+
+    @property
+    def can_be_taken_over(self) -> bool:
+        """Whether there are as many dots as there will be."""
+        return self.last is not None and self.stage in ("relax", "tone")
+
+
+@dataclass(slots=True)
+class Relaxing(Job):
+    """The drawing's own dots are moved, and maybe sized; it can be edited meanwhile."""
+
+    source: Source | None
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Move them."""
+        self._note(work)
+        if desk.document is not None:
+            if work.moved_mm is not None:
+                desk.document.merge(work.moved_mm)
+            if work.radius_mm is not None:
+                desk.document.merge_radii(work.radius_mm)
+        return self
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Make it one step."""
+        if desk.document is not None:
+            desk.document.end_run()
+
+
+@dataclass(slots=True)
+class Filling(Job):
+    """An area without a picture is filled with dots."""
+
+    source: Source | None
+    radius_mm: float
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Add the dots."""
+        self._note(work)
+        document = desk.document
+        if document is not None and work.points_mm is not None:
+            from stippler.drawing.dots import Dots
+
+            document.begin("Fill")
+            n_before = len(document.dots)
+            document.insert(Dots.round(work.points_mm, self.radius_mm))
+            document.commit()
+            desk.messages.say(f"{len(document.dots) - n_before:,} dots added")
+        return self
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Leave it at that: dots come all at once."""
+
+
+Activity = Idle | Opening | Making | Relaxing | Filling
+
+
+def _report(desk: Desk, n_dots: int, last: Progress | None) -> None:
+    """Say what has been drawn, and what it falls short of."""
+    from stippler.stippling.stipple import notes_on
+
+    desk.messages.say(f"{n_dots:,} dots drawn")
+    notes = notes_on(last) if last is not None else ()
+    if notes:
+        desk.messages.say("; ".join(notes), WARNING)
+    elif not n_dots:
+        desk.messages.say("the picture is all white: a drawing without dots", WARNING)

@@ -1,0 +1,114 @@
+"""Keeping the open drawing recoverable: a journal of all that happens to it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stippler.editor.messages import ERROR, INFO, Messages
+
+if TYPE_CHECKING:
+    from stippler.drawing.document import Document
+    from stippler.drawing.log import Entry
+    from stippler.files.native.edit_log import EditLog
+    from stippler.files.native.recovery import Keeper
+
+PART_S = 2.0
+"""How often what a run has changed is written down."""
+
+RETRY_S = 30.0
+"""How long after a failure it is tried again."""
+
+
+class Keeping:
+    """Follows whatever document is open, and writes down what happens to it.
+
+    Parameters
+    ----------
+    root : Path or None
+        The folder above what is kept; None keeps nothing.
+    program : str
+        Name and version of this program.
+    """
+
+    def __init__(
+        self,
+        root: Path | None,
+        program: str,
+        messages: Messages,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._root, self._program, self._messages, self._clock = root, program, messages, clock
+        self._document: Document | None = None
+        self._keeper: Keeper | None = None
+        self._log: EditLog | None = None
+        self._name = ""
+        self._path: Path | None = None
+        self._told_s = clock()
+        self._failed_s: float | None = None
+
+    def open(self, document: Document, name: str, path: Path | None = None) -> None:
+        """Keep another drawing from now on; the one before was closed as it should be.
+
+        Parameters
+        ----------
+        path : Path or None
+            The file it is saved in.
+        """
+        self.close()
+        self._document, self._name, self._path = document, name, path
+        document.follow(self._take)
+        self._begin()
+
+    def saved(self, path: Path) -> None:
+        """Begin anew with what is now in a file."""
+        self._name, self._path = path.name, path
+        if self._document is not None:
+            self._begin()
+
+    def poll(self) -> None:
+        """Write down what a run has changed, now and then; look after a disk that failed."""
+        now, keeper = self._clock(), self._keeper
+        if self._document is None or keeper is None:
+            return
+        if self._document.in_run and now - self._told_s >= PART_S:
+            self._told_s = now
+            self._document.tell_run()
+        if keeper.problem is not None and self._failed_s is None:
+            self._failed_s = now
+            self._messages.say(str(keeper.problem), ERROR, keeper.problem)
+        elif self._failed_s is not None and now - self._failed_s >= RETRY_S:
+            self._begin()
+            self._failed_s = None if self._keeper_is_fine() else now
+
+    def close(self) -> None:
+        """Forget what was kept: the drawing is closed, or saved, as a person wished."""
+        if self._keeper is not None:
+            self._keeper.forget()
+        self._document = self._keeper = self._log = None
+        self._failed_s = None
+
+    def _keeper_is_fine(self) -> bool:
+        fine = self._keeper is not None and self._keeper.problem is None
+        if fine:
+            self._messages.say("edits are kept for recovery again", INFO)
+        return fine
+
+    def _begin(self) -> None:
+        """Keep the drawing as it is now."""
+        if self._root is None or self._document is None:
+            return
+        from stippler.files.native.drawing_file import members_of
+        from stippler.files.native.edit_log import EditLog
+        from stippler.files.native.recovery import Keeper
+
+        self._keeper = self._keeper or Keeper(self._root)
+        start = self._document.drawing.snapshot()
+        self._keeper.begin(lambda: members_of(start), self._name, self._path, self._program)
+        self._log = EditLog(self._keeper.append, self._document)
+
+    def _take(self, entry: Entry) -> None:
+        if self._log is not None:
+            self._log.take(entry)

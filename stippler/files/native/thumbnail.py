@@ -1,0 +1,48 @@
+"""A small picture of a drawing, for lists of files; made without OpenGL."""
+
+from __future__ import annotations
+
+import io
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.drawing import Drawing
+
+MEMBER = "thumbnail.png"
+SIDE_PX = 256
+_FINER = 4  # samples a pixel, each way
+_MOST_DOTS = 100_000  # of more a part is drawn, each with the ink of those left out
+
+
+def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
+    """Return a drawing as grey values, its longer side of `side_px` pixels.
+
+    Dots are round here; smaller than a sample they are drawn by their share of it.
+    """
+    from stippler.analysis.tone_error import draw_ink
+
+    page, dots = drawing.page, drawing.dots
+    scale = side_px / max(page.width_mm, page.height_mm)
+    w, h = (max(round(side * scale), 1) for side in (page.width_mm, page.height_mm))
+    every = max(len(dots) // _MOST_DOTS, 1)
+    points = dots.position_mm[::every] * scale
+    radii = dots.radius_mm[::every].astype(np.float64) * (scale * math.sqrt(every))
+    small = radii * _FINER < 1.0
+    ink = draw_ink(points[~small], radii[~small], (h, w), _FINER)
+    at = np.floor(points[small]).astype(np.int64)
+    inside = ((at >= 0) & (at < (w, h))).all(axis=1)
+    areas = np.pi * radii[small][inside] ** 2
+    shares = np.bincount(at[inside, 1] * w + at[inside, 0], areas, w * h).reshape(h, w)
+    light = 1.0 - np.minimum(ink + shares, 1.0)
+    return np.asarray(np.rint(255.0 * light), np.uint8)
+
+
+def thumbnail_png(drawing: Drawing) -> bytes:
+    """Return a drawing's small picture as a PNG file."""
+    from PIL import Image
+
+    stream = io.BytesIO()
+    Image.fromarray(thumbnail(drawing)).save(stream, "png")
+    return stream.getvalue()

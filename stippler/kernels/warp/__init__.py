@@ -1,0 +1,1 @@
+"""Smooth deformation of points: perspective, a cage of control points, pins."""

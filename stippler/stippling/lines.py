@@ -1,0 +1,380 @@
+"""Dots and lines: distances kept, dots that line up, spacing in one dimension, rows."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import MultiPolygon, Polygon
+
+from stippler.drawing.line import ADHERE, DISTANCE, Line
+from stippler.drawing.planar.path import Path
+from stippler.errors import GeometryError, ParameterError
+from stippler.kernels.lines.nearest import find_nearest, list_segments, push_out
+from stippler.kernels.machine.pool import parallel_for
+
+Points: TypeAlias = NDArray[np.float64]
+Ints: TypeAlias = NDArray[np.int64]
+Tone: TypeAlias = Callable[[Points], Points]
+"""From places to how many dots they want, relatively."""
+
+_TURNS = 64
+_MOST_CELLS = 1_000_000
+_SAMPLES = 8  # of the tone, in a dot's part of a line
+MOST_ROW = 1_000_000
+
+
+class LineIndex:
+    """Lines in a grid, to find the nearest by.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    reach_mm : float or sequence of float
+        How far from each line's edge points are looked at.
+    """
+
+    def __init__(self, lines: Sequence[Line], reach_mm: float | Sequence[float]) -> None:
+        self.lines = tuple(lines)
+        parts = [line.segments() for line in lines]
+        counts = [len(p) for p in parts]
+        self.segments = np.ascontiguousarray(np.concatenate(parts)) if parts else np.empty((0, 8))
+        self.line_of = np.repeat(np.arange(len(parts)), counts)
+        lengths = [line.arc_lengths() for line in lines]
+        self.lengths = np.array([s[-1] for s in lengths])
+        self.closed = np.array([line.is_closed for line in lines], np.bool_)
+        self._first = np.r_[0.0, np.cumsum(self.lengths + 1.0)][: len(lengths)]
+        self._s = np.concatenate([s + f for s, f in zip(lengths, self._first, strict=True)] or [[]])
+        self._at = np.concatenate([k.path.points_mm for k in lines] or [np.empty((0, 2))])
+        reach = np.broadcast_to(np.asarray(reach_mm, np.float64), len(parts))
+        far = reach[self.line_of] + self.segments[:, 4:6].max(axis=1, initial=0.0)
+        low, high = _bounds(self.segments, float(far.max(initial=1.0)))
+        size = high - low
+        self._cell = max(
+            float(np.median(far)) if len(far) else 1.0, math.sqrt(size[0] * size[1] / _MOST_CELLS)
+        )
+        self._low = low
+        self._columns, self._rows = (int(v // self._cell) + 1 for v in size)
+        self._fill(far)
+
+    def _fill(self, far: Points) -> None:
+        start = np.zeros(self._columns * self._rows + 1, np.int64)
+        x0, y0 = map(float, self._low)
+        grid = (x0, y0, self._cell, self._columns, self._rows)
+        nothing = np.empty(0, np.int64)
+        list_segments(self.segments, far, *grid, start, nothing, True)
+        start = np.cumsum(start)
+        listed = np.empty(start[-1], np.int64)
+        list_segments(self.segments, far, *grid, start.copy(), listed, False)
+        self._grid = (self.segments, *grid, start, listed)
+
+    def at(self, line: Ints, along: Points) -> Points:
+        """Return the places at arc lengths along lines, many lines at once."""
+        s = self._first[line] + np.where(self.closed[line], along % self.lengths[line], along)
+        return np.column_stack([np.interp(s, self._s, self._at[:, k]) for k in (0, 1)])
+
+    def nearest(self, points: Points) -> tuple[Ints, Points, Points]:
+        """Return for each point its line or -1, arc length along it, distance to its edge."""
+        at = np.ascontiguousarray(points, np.float64)
+        n = len(at)
+        which, along, away = np.empty(n, np.int64), np.empty(n), np.empty(n)
+        parallel_for(find_nearest, n, at, *self._grid, which, along, away)
+        line = np.where(which >= 0, self.line_of[which] if len(self.line_of) else -1, -1)
+        return line, along, np.where(which >= 0, away, np.inf)
+
+    def keep_distance(self, points: Points) -> tuple[Points, NDArray[np.bool_]]:
+        """Return points moved so that each keeps its lines' distances, and whether it does.
+
+        A point that finds no such place, between lines too close together, is told by False.
+        """
+        gap = np.array([k.distance_mm for k in self.lines])[self.line_of]
+        out = np.array(points, np.float64)
+        held = np.empty(len(out), np.bool_)
+        parallel_for(push_out, len(out), out, gap, *self._grid, _TURNS, held)
+        return out, held
+
+
+def _bounds(segments: Points, far: float) -> tuple[Points, Points]:
+    at = segments[:, :4].reshape(-1, 2)
+    if not len(at):
+        return np.zeros(2), np.ones(2)
+    return at.min(axis=0) - far, at.max(axis=0) + far
+
+
+def keeping_distance(lines: Sequence[Line]) -> LineIndex:
+    """Return the index for the lines that dots keep a distance from."""
+    chosen = [line for line in lines if line.meeting == DISTANCE]
+    return LineIndex(chosen, [line.distance_mm for line in chosen])
+
+
+def adhering(lines: Sequence[Line]) -> LineIndex:
+    """Return the index for the lines that dots adhere to."""
+    chosen = [line for line in lines if line.meeting == ADHERE]
+    return LineIndex(chosen, [line.reach_mm for line in chosen])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Adhered:
+    """Dots after one step of lining up.
+
+    Attributes
+    ----------
+    points : (n, 2) float64
+    line : (n,) int64
+        The line each lies on now; -1 for none.
+    along : (n,) float64
+        Arc length there.
+    """
+
+    points: Points
+    line: Ints
+    along: Points
+
+
+def adhere(index: LineIndex, points: Points, tone: Tone | None = None) -> Adhered:
+    """Take dots within reach of lines to them, those near at once, those farther a part of the way.
+
+    Dots within half the reach come to lie on the line, and are spread along it in one dimension;
+    beyond, the pull falls off smoothly to nothing at the reach's end.
+    """
+    line, along, away = index.nearest(points)
+    out = np.array(points, np.float64)
+    reach = np.array([k.reach_mm for k in index.lines] or [1.0])[line]
+    share = np.where(line >= 0, np.clip(2.0 - 2.0 * np.maximum(away, 0.0) / reach, 0.0, 1.0), 0.0)
+    on = share >= 1.0
+    pulled = np.flatnonzero((share > 0.0) & ~on)
+    share = 0.5 * (share * share * (3.0 - 2.0 * share))[pulled, None]
+    out[pulled] += share * (index.at(line[pulled], along[pulled]) - out[pulled])
+    mine = np.flatnonzero(on)
+    along[mine] = _spread_many(index, line[mine], along[mine], tone)
+    out[mine] = index.at(line[mine], along[mine])
+    return Adhered(out, np.where(on, line, -1), np.where(on, along, 0.0))
+
+
+def _spread_many(index: LineIndex, line: Ints, along: Points, tone: Tone | None) -> Points:
+    """Spread dots along the lines they are on; all lines at once where there is no tone."""
+    out = np.empty(len(along))
+    order = np.lexsort((along, line))
+    owner, at = line[order], along[order]
+    if tone is not None:
+        bounds = np.flatnonzero(np.diff(owner, prepend=-2, append=-2))
+        for a, b in itertools.pairwise(bounds.tolist()):
+            out[order[a:b]] = spread(index.lines[int(owner[a])], at[a:b], tone)
+        return out
+    n = np.bincount(owner, minlength=len(index.lines))
+    rank = np.arange(len(owner)) - (np.cumsum(n) - n)[owner]
+    step = index.lengths / np.maximum(n, 1)
+    off = np.bincount(owner, at - rank * step[owner], len(n)) / np.maximum(n, 1)
+    first = np.where(index.closed, off, 0.5 * step)
+    out[order] = first[owner] + rank * step[owner]
+    return np.where(index.closed[line], out % index.lengths[line], out)
+
+
+def spread(
+    line: Line,
+    along: Points,
+    tone: Tone | None = None,
+    fixed: NDArray[np.bool_] | None = None,
+    share: float = 1.0,
+) -> Points:
+    """Spread dots along a line, so that each has the same part of its tone.
+
+    Parameters
+    ----------
+    along : (n,) float64
+        Arc lengths; in any order, which is kept.
+    tone : callable, optional
+        How dense dots are to lie; even if left out.
+    fixed : (n,) bool, optional
+        Dots that stay, and that the others are spread between.
+    share : float
+        How much of the way to go.
+
+    Returns
+    -------
+    (n,) float64
+
+    Notes
+    -----
+    In the measure that the tone gives, even spacing is where the energy of one-dimensional Lloyd
+    relaxation is least, and it is convex: no share of the way raises it.
+    """
+    n = len(along)
+    if n == 0:
+        return np.empty(0)
+    length = line.length_mm
+    s, mass = _measure(line, tone, n)
+    whole = float(mass[-1])
+    order = np.argsort(along, kind="stable")
+    m = np.interp(along[order] % length if line.is_closed else along[order], s, mass)
+    if line.is_closed:
+        order, m = order[np.argsort(m, kind="stable")], np.sort(m)
+    still = np.zeros(n, np.bool_) if fixed is None else np.asarray(fixed, np.bool_)[order]
+    goal = _even(m, still, whole, line.is_closed)
+    at = m + share * (goal - m)
+    out = np.empty(n)
+    out[order] = np.interp(at % whole if line.is_closed else at, mass, s)
+    if fixed is not None:
+        out[fixed] = along[fixed]
+    return out
+
+
+def _measure(line: Line, tone: Tone | None, n: int) -> tuple[Points, Points]:
+    """Return arc lengths, and the tone's integral up to them."""
+    length = line.length_mm
+    if tone is None:
+        return np.array([0.0, length]), np.array([0.0, length])
+    s = np.linspace(0.0, length, max(64, _SAMPLES * n) + 1)
+    middle = (s[1:] + s[:-1]) / 2
+    wanted = np.maximum(np.asarray(tone(line.at(middle)), np.float64), 0.0)
+    wanted = np.maximum(wanted, 1e-6 * max(float(wanted.max(initial=0.0)), 1e-300))
+    mass = np.r_[0.0, np.cumsum(wanted * np.diff(s))]
+    return s, mass
+
+
+def _even(m: Points, still: NDArray[np.bool_], whole: float, closed: bool) -> Points:
+    """Return where sorted dots lie evenly between those that stay."""
+    n = len(m)
+    rank = np.arange(n)
+    if not still.any():
+        if not closed:
+            return np.asarray((rank + 0.5) / n * whole)
+        step = whole / n
+        return np.asarray(rank * step + float((m - rank * step).mean()))
+    anchors = np.flatnonzero(still)
+    xp, fp = anchors.astype(np.float64), m[anchors]
+    if closed:
+        xp = np.r_[xp[-1] - n, xp, xp[0] + n]
+        fp = np.r_[fp[-1] - whole, fp, fp[0] + whole]
+    else:  # as if half a step lay beyond both ends
+        first, last = anchors[0], anchors[-1]
+        lead = fp[0] / (first + 0.5)
+        rest = (whole - fp[-1]) / (n - 1 - last + 0.5)
+        xp = np.r_[-0.5, xp, n - 0.5]
+        fp = np.r_[fp[0] - lead * (first + 0.5), fp, fp[-1] + rest * (n - 1 - last + 0.5)]
+    return np.interp(rank, xp, fp)
+
+
+def crossings(lines: Sequence[Line]) -> list[tuple[int, float, int, float]]:
+    """Return where lines cross: (line, arc length, other line, arc length), each pair once."""
+    shapes = np.array([shapely.linestrings(line.path.points_mm) for line in lines])
+    tree = shapely.STRtree(shapes)
+    a, b = tree.query(shapes, predicate="crosses")
+    out: list[tuple[int, float, int, float]] = []
+    for i, j in zip(a.tolist(), b.tolist(), strict=True):
+        if i >= j:
+            continue
+        for place in shapely.get_parts(shapely.intersection(shapes[i], shapes[j])):
+            p = shapely.points(shapely.get_coordinates(place)[0])
+            s, t = (float(shapely.line_locate_point(shapes[k], p)) for k in (i, j))
+            out.append((i, s, j, t))
+    return out
+
+
+def spread_all(
+    lines: Sequence[Line], line_of: Ints, along: Points, tone: Tone | None = None
+) -> tuple[Points, Points]:
+    """Spread dots along many lines; where two cross, one dot lies in the crossing for both.
+
+    Returns
+    -------
+    along : (n,) float64
+    points : (n, 2) float64
+    """
+    along = np.array(along, np.float64)
+    fixed = np.zeros(len(along), np.bool_)
+    ghosts: dict[int, list[float]] = {}
+    for i, s, j, t in crossings(lines):
+        near = _nearest_on(lines[i], np.flatnonzero((line_of == i) & ~fixed), along, s)
+        if near is None:
+            continue
+        along[near], fixed[near] = s, True
+        ghosts.setdefault(j, []).append(t)
+    points = np.empty((len(along), 2))
+    for k, line in enumerate(lines):
+        mine = np.flatnonzero(line_of == k)
+        if not len(mine):
+            continue
+        more = np.array(ghosts.get(k, []))
+        held = np.r_[fixed[mine], np.ones(len(more), np.bool_)]
+        found = spread(line, np.r_[along[mine], more], tone, held if held.any() else None)
+        along[mine] = found[: len(mine)]
+        points[mine] = line.at(along[mine])
+    return along, points
+
+
+def _nearest_on(line: Line, mine: NDArray[np.intp], along: Points, s: float) -> int | None:
+    """Return the dot nearest along a line, if it is no farther than the mean spacing."""
+    if not len(mine):
+        return None
+    off = np.abs(along[mine] - s)
+    if line.is_closed:
+        off = np.minimum(off, line.length_mm - off)
+    k = int(np.argmin(off))
+    return int(mine[k]) if off[k] <= line.length_mm / len(mine) else None
+
+
+def row(line: Line, n: int | None = None, distance_mm: float | None = None,
+        tone: Tone | None = None) -> Points:  # fmt: skip
+    """Return a row of dots along a line: so many, or about so far apart.
+
+    An open line's first and last dot lie half a distance from its ends.
+    """
+    if (n is None) == (distance_mm is None):
+        raise ParameterError("give a number or a distance, not both", "row")
+    if n is None:
+        if not (distance_mm and math.isfinite(distance_mm) and distance_mm > 0):
+            raise ParameterError(f"{distance_mm} mm is no distance", "row", "give more than 0")
+        n = max(1, round(line.length_mm / distance_mm))
+    if not 1 <= n <= MOST_ROW:
+        raise ParameterError(f"{n} dots cannot be laid", "row", f"give 1 to {MOST_ROW:,}")
+    start = np.arange(n) / n * line.length_mm
+    return line.at(spread(line, start, tone))
+
+
+INSIDE, OUTSIDE, ON = "inside", "outside", "on"
+
+
+def border_lines(outline: Polygon | MultiPolygon, side: str, away_mm: float = 0.0) -> list[Line]:
+    """Return closed lines along an area's border: inside or outside by a distance, or on it."""
+    if side not in (INSIDE, OUTSIDE, ON):
+        raise ParameterError(f"{side!r} is unknown", "row", "one of inside, outside, on")
+    by = {INSIDE: -away_mm, OUTSIDE: away_mm, ON: 0.0}[side]
+    shape = outline.buffer(by) if by else outline
+    polygons = list(shape.geoms) if isinstance(shape, MultiPolygon) else [shape]
+    rings = [r for p in polygons if not p.is_empty for r in (p.exterior, *p.interiors)]
+    if not rings:
+        raise GeometryError("is too narrow for this distance", "area", "take a smaller one")
+    return [
+        Line("border", Path.polyline(shapely.get_coordinates(ring), closed=True), (0.0, 0.0))
+        for ring in rings
+    ]
+
+
+def hatch_lines(
+    outline: Polygon | MultiPolygon, distance_mm: float, angle_rad: float = 0.0
+) -> list[Line]:
+    """Return parallel lines that fill an area."""
+    if not (math.isfinite(distance_mm) and distance_mm > 0 and math.isfinite(angle_rad)):
+        raise ParameterError("need a distance above 0 and an angle", "hatching")
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    along, across = np.array([c, s]), np.array([-s, c])
+    corners = np.array(shapely.box(*outline.bounds).exterior.coords)
+    low, high = (corners @ across).min(), (corners @ across).max()
+    first, last = (corners @ along).min() - 1.0, (corners @ along).max() + 1.0
+    n = int((high - low) / distance_mm) + 1
+    if n > 100_000:
+        raise ParameterError(f"would be {n:,} lines", "hatching", "take a larger distance")
+    at = np.arange(n) * distance_mm + low + 0.5 * ((high - low) - (n - 1) * distance_mm)
+    ends = np.stack([first * along + at[:, None] * across, last * along + at[:, None] * across], 1)
+    found = shapely.get_parts(shapely.intersection(shapely.linestrings(ends), outline))
+    found = found[(shapely.get_type_id(found) == 1) & (shapely.length(found) > 1e-3)]
+    return [
+        Line("hatch", Path.polyline(shapely.get_coordinates(part)), (0.0, 0.0)) for part in found
+    ]

@@ -1,0 +1,3 @@
+"""The version of the program, as files and `stippler --version` tell it."""
+
+VERSION = "0.1.0"
