@@ -2,7 +2,8 @@
 # make test   every test, without a screen
 # make check  lint, types, import contracts
 # make bench  every performance figure
-.PHONY: run test check bench clean
+# make soak   an hour of random use (MINUTES=60)
+.PHONY: run test check bench soak clean
 .DEFAULT_GOAL := run
 
 VENV := .venv
@@ -38,6 +39,12 @@ bench: $(VENV)/ready-dev
 	@setup/system-libraries test
 	@$(BIN)/python -m stippler.warm
 	$(BIN)/stippler bench
+
+MINUTES := 60
+soak: $(VENV)/ready-dev
+	@setup/system-libraries test
+	@$(BIN)/python -m stippler.warm
+	$(BIN)/python -m benchmarks.soak $(MINUTES)
 
 $(VENV)/ready: pyproject.toml
 	@echo "Setting up $(VENV) (once) ..."
