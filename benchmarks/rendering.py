@@ -24,7 +24,7 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.preview import Footprint, Preview
 from stippler.drawing.shape_change import ShapeChange, to
-from stippler.files.svg import svg_chunks
+from stippler.files.write.svg import svg_chunks
 from stippler.headless import is_software, open_context, open_gpu_context
 from stippler.kernels.shapes.dot_shape import bezier_outlines
 from stippler.render.frame import Frame

@@ -40,14 +40,31 @@ class Drawing(_Drawing):
     notes: tuple[str, ...] = ()
     inputs: tuple[Path, ...] = ()
 
-    def save(self, path: str | PathLike[str], *, dpi: float = 300.0, form: str = "") -> None:
-        """Write the drawing; see `stippler.export.save`. A name in .stipple keeps all of it."""
+    def save(self, path: str | PathLike[str], *, form: str = "", **options: Any) -> list[Path]:
+        """Write the drawing in the format that the file's ending chooses.
+
+        Parameters
+        ----------
+        path : path
+            Ends in .svg, .svgz, .pdf, .eps, .tif, .png, .csv, .json, .npz, .gcode, .hpgl
+            or .dxf; .stipple keeps all of the drawing.
+        form : str
+            The format by its ending, whatever the file's own.
+        options
+            Such as ``dpi=600``, ``print_width=86`` or ``profile="elsevier"``; see
+            `stippler.export.save` and ``docs/exports.md``.
+
+        Returns
+        -------
+        list of Path
+            The files written; more than one where a format wants a file a pen.
+        """
         from stippler.export import save
 
-        save(self, Path(path), dpi=dpi, inputs=self.inputs, form=form)
+        return save(self, Path(path), inputs=self.inputs, form=form, **options)
 
     def _repr_svg_(self) -> str:
-        from stippler.files.svg import svg_chunks
+        from stippler.files.write.svg import svg_chunks
 
         return b"".join(svg_chunks(self)).decode()
 

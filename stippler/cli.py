@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.exceptions import TyperException
 
+from stippler.cli_options import export_names, with_export_options
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.machine.numba_import import skip_blas
 from stippler.names import shown
@@ -180,21 +181,22 @@ def edit(
 
 
 @app.command()
+@with_export_options
 def render(
     context: typer.Context,
     file: Annotated[Path, typer.Argument(help="A picture, or a drawing (.stipple, .csv).")],
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", help="Drawing to write: .svg, .png or .csv; - for output."),
+        typer.Option("-o", "--output", help="File to write, by its ending; - for output."),
     ],
     form: Annotated[
-        str, typer.Option("--format", metavar="NAME", help="svg, png or csv, whatever the ending.")
+        str,
+        typer.Option("--format", metavar="NAME", help="Format, whatever the ending."),
     ] = "",
     dots: Dots = None,
     width: Width = DEFAULT_WIDTH_MM,
     iterations: Iterations = 20,
     seed: Seed = 1,
-    dpi: Annotated[float, typer.Option(help="Pixels an inch of a .png.")] = 300.0,
     tone: ToneOption = "illustration",
     size_range: SizeRange = None,
     first_dots: FirstDots = "pulse-density",
@@ -204,17 +206,19 @@ def render(
     spacing: Spacing = "even",
     unweighted: Unweighted = False,
     pen: PenOption = "technical-pen",
+    *,
+    exports: dict[str, Any],
 ) -> None:
     """Turn a picture into a drawing, or a drawing into a file of another kind, without a window."""
     gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
     from stippler.export import check_output
 
-    check_output(output, dpi, [_input(file)], form)
+    check_output(output, [_input(file)], form, **exports)
     from stippler.opening import is_drawing
 
     with at_hand(file) as at:
         if is_drawing(at):
-            _write_again(at, output, dpi, form, _given(context))
+            _write_again(at, output, form, exports, _given(context))
             return
         plan = _plan(
             n_dots=dots,
@@ -233,23 +237,25 @@ def render(
         from stippler.export import check_size
         from stippler.progress import stages_shown
 
-        check_size(output, _page_of(at, width), dpi, form)
+        check_size(output, _page_of(at, width), form, **exports)
         with stages_shown() as show:
             from stippler.api import draw
 
             show("picture", 0, 1)
             drawing = draw(at, plan, tone=tone, width_mm=width, show=show)
             show("write", 0, 1)
-            drawing.save(output, dpi=dpi, form=form)
+            drawing.save(output, form=form, **exports)
             stops.written = True
             show("write", 1, 1)
     for note in drawing.notes:
         _note(file, note)
 
 
-def _write_again(file: Path, output: Path, dpi: float, form: str, given: set[str]) -> None:
+def _write_again(
+    file: Path, output: Path, form: str, exports: dict[str, Any], given: set[str]
+) -> None:
     """Write a drawing to a file of another kind."""
-    making = given - {"file", "output", "dpi", "form"}
+    making = given - {"file", "output", "form", *export_names()}
     if making:
         raise ParameterError(
             f"is of a picture, and {shown(file)} is a drawing already",
@@ -260,7 +266,7 @@ def _write_again(file: Path, output: Path, dpi: float, form: str, given: set[str
 
     drawing = open_drawing(file)
     drawing.inputs = (file,)
-    drawing.save(output, dpi=dpi, form=form)
+    drawing.save(output, form=form, **exports)
     stops.written = True
 
 

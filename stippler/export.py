@@ -1,136 +1,156 @@
-"""A drawing to a file, by the file's ending."""
+"""A drawing to files, by the file's ending or a format's name."""
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from stippler.atomic_write import STDOUT, check_writable, replacing
 from stippler.drawing.drawing import Drawing, Page
-from stippler.errors import OutputError, ParameterError
-from stippler.units import px_per_mm
+from stippler.errors import ParameterError
+from stippler.files.write.format import Format
+from stippler.files.write.formats import ENDINGS, format_named, format_of, options_of
+from stippler.files.write.options import checked
 
-DEFAULT_DPI = 300.0
+__all__ = ["ENDINGS", "check_output", "check_size", "chosen", "save", "values_for"]
+
+Show = Callable[[int], None]
+"""Told how many bytes have been written."""
 
 
-def check_ending(path: str | Path, form: str = "") -> str:
-    """Return the ending that names a file's format, or raise `OutputError` if none writes it.
+def chosen(path: str | Path, form: str = "") -> Format:
+    """Return the format that a file is written in, or raise if there is none.
 
     Parameters
     ----------
     form : str
-        The format by name, such as "svg", where the file's own ending is not to be asked.
+        The format by its ending, such as "svg", where the file's own is not to be asked.
     """
-    ending = f".{form.lower().removeprefix('.')}" if form else Path(path).suffix.lower()
-    if os.fspath(path) == STDOUT and not ending:
-        raise ParameterError("needs a format", "standard output", f"give --format {_FORMS}")
-    if form and ending not in ENDINGS:
-        raise ParameterError(f"{form!r} is no format", "format", f"choose {_FORMS}")
-    if ending not in ENDINGS:
-        what = f"the ending {ending!r} is not written" if ending else "the name has no ending"
-        raise OutputError(what, path, f"end it in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
-    return ending
+    if form:
+        return format_named(form)
+    if os.fspath(path) == STDOUT:
+        raise ParameterError("needs a format", "standard output", "give --format svg or another")
+    return format_of(path)
+
+
+def values_for(one: Format, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a value for each option of a format, from those given and the profile's.
+
+    Options that are None count as not given.
+    """
+    own = tuple(option.name for option in one.options)
+    given = {name: value for name, value in options.items() if value is not None}
+    if "dpi" not in own:
+        given.pop("dpi", None)  # whoever asks for one means: if it has pixels
+    if given.get("profile") is not None or given.get("column") is not None:
+        from stippler.files.write.profiles import with_profile
+
+        given = with_profile(given, own)
+    return checked(options_of(one), given)
 
 
 def check_output(
-    path: str | Path,
-    dpi: float = DEFAULT_DPI,
-    inputs: Iterable[str | Path] = (),
-    form: str = "",
+    path: str | Path, inputs: Iterable[str | Path] = (), form: str = "", **options: Any
 ) -> None:
-    """Raise now what `save` would raise later: a wrong ending, folder or resolution.
+    """Raise now what `save` would raise later: a wrong ending, folder or value.
 
     Parameters
     ----------
     inputs : paths
         What the drawing is made from; the output may be none of these files, by whatever name.
     form : str
-        As for `check_ending`.
+        As for `chosen`.
     """
-    check_ending(path, form)
-    if not (math.isfinite(dpi) and dpi > 0):
-        raise ParameterError(f"{dpi:g} is no resolution", "dpi", "give a number above 0")
+    values_for(chosen(path, form), options)
     check_writable(path, inputs)
 
 
-def check_size(path: str | Path, page: Page, dpi: float = DEFAULT_DPI, form: str = "") -> None:
+def check_size(path: str | Path, page: Page, form: str = "", **options: Any) -> None:
     """Raise now what `save` would raise later: a page that has too many pixels, or none."""
-    if check_ending(path, form) == ".png":
-        from stippler.headless import image_size
+    one = chosen(path, form)
+    values = values_for(one, options)
+    if "dpi" in values:
+        from stippler.files.write.plate import plate_of
+        from stippler.files.write.raster import size_px
 
-        image_size(Drawing.blank(page), px_per_mm(dpi))
+        size_px(plate_of(Drawing.blank(page), values), values["dpi"])
 
 
 def save(
     drawing: Drawing,
     path: str | Path,
     *,
-    dpi: float = DEFAULT_DPI,
     inputs: Iterable[str | Path] = (),
     form: str = "",
-) -> None:
-    """Write a drawing as SVG, PNG, CSV or a drawing of our own kind, whole or not at all.
+    show: Show | None = None,
+    **options: Any,
+) -> list[Path]:
+    """Write a drawing in the format of the file's ending, whole or not at all.
 
     Parameters
     ----------
     path : path
-        Its ending chooses the format; ``-`` is standard output.
-    dpi : float
-        Pixels an inch of a PNG; ignored for others.
+        Its ending chooses the format; ``-`` is standard output. Formats for pens write a file a
+        layer, where there are several: the layer's number and name are put before the ending.
     inputs : paths
         What the drawing was made from, which is never written over.
     form : str
-        The format by name, whatever the file's ending.
+        The format by its ending, whatever the file's own.
+    show : callable, optional
+        Told how many bytes have been written; whatever it raises ends the writing.
+    options
+        Those of the format and of every picture; see `docs/exports.md`.
+
+    Returns
+    -------
+    list of Path
+        The files written.
 
     Raises
     ------
     OutputError
         If the ending is unknown or the file cannot be written; what stood there stays.
     ParameterError
-        If `dpi` is not a finite number above 0.
-    DisplayError
-        If a PNG is asked for and there is no OpenGL.
+        If there is no option of a name, or its value is out of range.
     """
-    check_output(path, dpi, inputs, form)
-    chunks = _WRITERS[check_ending(path, form)](drawing, dpi)
-    with replacing(path) as stream:
-        stream.writelines(chunks)
+    inputs = list(inputs)
+    check_output(path, inputs, form, **options)
+    one = chosen(path, form)
+    files = list(_files(one, drawing, path, values_for(one, options)))
+    for file, _ in files:
+        check_writable(file, inputs)
+    for file, chunks in files:
+        with replacing(file) as stream:
+            n_written = 0
+            for chunk in chunks:
+                stream.write(chunk)
+                n_written += len(chunk)
+                if show is not None:
+                    show(n_written)
+    return [Path(file) for file, _ in files]
 
 
-def _svg(drawing: Drawing, dpi: float) -> Iterator[bytes]:
-    from stippler.files.svg import svg_chunks
+def _files(
+    one: Format, drawing: Drawing, path: str | Path, values: Mapping[str, Any]
+) -> Iterator[tuple[str | Path, Iterator[bytes]]]:
+    """Yield the names of files and what goes into them."""
+    if one.is_data:
+        yield path, one.write(drawing, values)
+        return
+    from dataclasses import replace
 
-    return svg_chunks(drawing)
+    from stippler.files.write.names import plain, unique
+    from stippler.files.write.plate import plate_of
 
-
-def _csv(drawing: Drawing, dpi: float) -> Iterator[bytes]:
-    from stippler.files.table import csv_chunks
-
-    return csv_chunks(drawing.dots)
-
-
-def _png(drawing: Drawing, dpi: float) -> Iterator[bytes]:
-    from stippler.files.png import png_chunks
-    from stippler.headless import image_size, render_strips
-
-    scale = px_per_mm(dpi)
-    strips = render_strips(drawing, px_per_mm=scale, grey=True)
-    return png_chunks(strips, image_size(drawing, scale), dpi)
-
-
-def _stipple(drawing: Drawing, dpi: float) -> Iterator[bytes]:
-    from stippler.files.native.drawing_file import file_bytes
-
-    yield file_bytes(drawing)
-
-
-_WRITERS: dict[str, Callable[[Drawing, float], Iterator[bytes]]] = {
-    ".svg": _svg,
-    ".png": _png,
-    ".csv": _csv,
-    ".stipple": _stipple,
-}
-ENDINGS = tuple(_WRITERS)
-_FORMS = " or ".join(ending[1:] for ending in ENDINGS)
+    sheet = plate_of(drawing, values)
+    layers = [layer for layer in sheet.layers if not layer.is_empty]
+    if not one.a_file_a_layer or len(layers) < 2 or os.fspath(path) == STDOUT:
+        yield path, one.write(sheet, values)
+        return
+    path = Path(path)
+    names = unique(plain(layer.name) for layer in layers)
+    for k, (name, layer) in enumerate(zip(names, layers, strict=True), 1):
+        file = path.with_name(f"{path.stem}-{k}-{name}{path.suffix}")
+        yield file, one.write(replace(sheet, layers=(layer,)), values)

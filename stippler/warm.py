@@ -80,12 +80,20 @@ def _relax_a_cluster() -> None:
 
 def _write(drawing: Drawing) -> None:
     """Write round and deformed dots in every way there is."""
-    from stippler.files.svg import svg_chunks
+    import tempfile
+
+    from stippler.export import save
+    from stippler.files.write.formats import CLOSED, COMPOUND, FORMATS
     from stippler.headless import render_image
 
     for elongation, roughness in ((1.0, 0.0), (2.0, 0.5)):
         drawing.dots.elongation[:], drawing.dots.roughness[:] = elongation, roughness
-        list(svg_chunks(drawing))
+        with tempfile.TemporaryDirectory() as folder:
+            for one in FORMATS:
+                save(drawing, Path(folder) / f"drawing{one.endings[0]}")
+            line: dict[str, Any] = {"one_line": CLOSED, "caption": "A", "round_dots": COMPOUND}
+            save(drawing, Path(folder) / "line.svg", **line)
+            save(drawing, Path(folder) / "line.png", one_line=CLOSED, dpi=30)
         with contextlib.suppress(DisplayError):  # without OpenGL nothing needs those kernels
             for px_per_mm in (2.0, 8.0):  # seen from afar; near enough to look rough
                 render_image(drawing, px_per_mm=px_per_mm)

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from stippler.cli import COMMANDS
-from stippler.files.table import COLUMNS
+from stippler.files.write.table import FIRST_COLUMNS
 from stippler.start import main
 
 WAIT_S = 120
@@ -109,7 +109,7 @@ def test_render_csv_has_the_dots_asked_for_on_the_page(picture, tmp_path):
     assert result.returncode == 0, result.stderr
     with out.open(newline="") as stream:
         rows = list(csv.DictReader(stream))
-    assert list(rows[0]) == COLUMNS.split(",")
+    assert list(rows[0]) == FIRST_COLUMNS.split(",")
     assert abs(len(rows) - 2000) <= 20
     xy = np.array([[float(row["x_mm"]), float(row["y_mm"])] for row in rows])
     assert xy.min() >= 0
@@ -166,8 +166,8 @@ def test_stats_of_what_cannot_be_measured(
     picture, tmp_path, monkeypatch, capsys, args, status, words
 ):
     monkeypatch.chdir(tmp_path)
-    Path("dots.csv").write_text(f"{COLUMNS}\n9,9,0.5,1,0,0,1,0,0\n")
-    Path("bad.csv").write_text(f"{COLUMNS}\n9,9\n")
+    Path("dots.csv").write_text(f"{FIRST_COLUMNS}\n9,9,0.5,1,0,0,1,0,0\n")
+    Path("bad.csv").write_text(f"{FIRST_COLUMNS}\n9,9\n")
     args = [part.format(picture=picture) for part in args]
     assert_one_line(run_here(monkeypatch, capsys, "stats", *args), status, *words)
 
@@ -228,7 +228,7 @@ def test_files_that_are_no_picture(tmp_path, monkeypatch, capsys, command, name,
 
 @pytest.mark.parametrize(
     ("out", "words"),
-    [("none/out.svg", ["does not exist"]), ("out.doc", [".doc", ".svg, .png, .csv or .stipple"]),
+    [("none/out.svg", ["does not exist"]), ("out.doc", [".doc", ".dxf or .stipple"]),
      ("out", ["no ending"]), ("folder.svg", ["is a folder"])],
 )  # fmt: skip
 def test_outputs_that_cannot_be_written(picture, tmp_path, monkeypatch, capsys, out, words):
@@ -251,7 +251,7 @@ def test_a_white_picture_is_a_drawing_without_dots(tmp_path, ending):
     assert_one_line(result, 0, "white", "no dots")
     assert out.stat().st_size > 0
     if ending == "csv":
-        assert out.read_text() == COLUMNS + "\n"
+        assert out.read_text() == FIRST_COLUMNS + "\n"
 
 
 def test_an_interrupt_leaves_the_old_file(picture, tmp_path):
@@ -278,11 +278,11 @@ def test_an_interrupt_leaves_the_old_file(picture, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["out.svg"]
 
 
-def test_no_gl_driver(picture, tmp_path):
+def test_pictures_need_no_gl_driver(picture, tmp_path):
     env = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "EGL_PLATFORM": "none"}
     result = run("render", picture, "-o", tmp_path / "out.png", "--dots", 200, **env)
-    assert_one_line(result, 1, "OpenGL", "libegl1")
-    assert list(tmp_path.iterdir()) == []
+    assert result.returncode == 0, result.stderr
+    assert (tmp_path / "out.png").stat().st_size > 1000
 
 
 def test_no_display(picture):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stippler.files.table import COLUMNS
+from stippler.files.write.table import FIRST_COLUMNS as COLUMNS
 
 WAIT_S = 180
 ODD = r"$'caf\xe9'"  # in Latin-1

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.editor.messages import ERROR, Messages
 from stippler.jobs import work
@@ -35,6 +36,7 @@ class Exports:
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
+        self._writing = work.Writing()
         self.n_written = 0
         self.begin_drawing()
 
@@ -42,6 +44,15 @@ class Exports:
     def busy(self) -> bool:
         """Whether a file is being written."""
         return self._request is not None
+
+    @property
+    def n_bytes(self) -> int:
+        """How much of the file has been written."""
+        return self._writing.n_bytes
+
+    def give_up(self) -> None:
+        """End the writing at its next piece; what stood there before stays."""
+        self._writing.given_up = True
 
     def begin_drawing(self) -> None:
         """Take note that another drawing is open."""
@@ -53,18 +64,23 @@ class Exports:
         self,
         document: Document,
         path: Path,
-        dpi: float,
+        options: Mapping[str, Any],
         inputs: tuple[Path, ...] = (),
     ) -> None:
         """Write a drawing as it is now.
 
         Parameters
         ----------
+        options : mapping
+            Of the file's format; see `stippler.export.save`.
         inputs : paths
             The files that the drawing was made from, which are never written over.
         """
         drawing = document.drawing.snapshot()
-        self._request = self._worker.start(lambda: work.export_drawing(drawing, path, dpi, inputs))
+        self._writing = writing = work.Writing()
+        self._request = self._worker.start(
+            lambda: work.export_drawing(drawing, path, options, inputs, writing)
+        )
         self._mark = _mark(document)
         self._messages.say(f"writing {path.name}")
 

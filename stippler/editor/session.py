@@ -240,7 +240,7 @@ class Session:
             self.messages.say("there are no dots to export", WARNING)
             return
         inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self.document, path, dpi, inputs)
+        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
 
     # --- what the workers did ---------------------------------------------------------------
 

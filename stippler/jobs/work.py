@@ -10,10 +10,10 @@ import re
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.errors import StipplerError
@@ -203,11 +203,33 @@ def _ready(lines: list[str]) -> tuple[int, int]:
     return (int(found[1]), int(found[2])) if found else (0, 0)
 
 
+@dataclass(slots=True)
+class Writing:
+    """A file being written, for two threads: how far it is, and whether a person gave it up."""
+
+    n_bytes: int = 0
+    given_up: bool = False
+
+
 def export_drawing(
-    drawing: Drawing, path: Path, dpi: float, inputs: tuple[Path, ...] = ()
+    drawing: Drawing,
+    path: Path,
+    options: Mapping[str, Any],
+    inputs: tuple[Path, ...] = (),
+    writing: Writing | None = None,
 ) -> Iterator[Path]:
-    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there."""
+    """Write a drawing to a file that is none of its `inputs`; yield its path when it is there.
+
+    A worker that closes lets it be finished; only `writing` gives it up, at its next piece.
+    """
     from stippler.export import save
 
-    save(drawing, path, dpi=dpi, inputs=inputs)
+    state = writing or Writing()
+
+    def show(n_bytes: int) -> None:
+        state.n_bytes = n_bytes
+        if state.given_up:
+            raise StipplerError("was given up", path.name, "nothing was written")
+
+    save(drawing, path, inputs=inputs, show=show, **options)
     yield path

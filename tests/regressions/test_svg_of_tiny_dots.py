@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stippler
-from stippler.files.svg import svg_chunks
+from stippler.files.write.svg import svg_chunks
 
 CIRCLE = ".//{http://www.w3.org/2000/svg}circle"
 

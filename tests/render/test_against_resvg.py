@@ -15,7 +15,7 @@ from PIL import Image
 from stippler.camera import Camera
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.files.svg import svg_chunks
+from stippler.files.write.svg import svg_chunks
 
 PAGE = Page(40, 30)
 LARGE = 96  # pixels a mm

@@ -1,1 +1,1 @@
-"""Drawings to files, one module a kind."""
+"""Drawings to files: one module a format, all made from the same sheet of layers."""

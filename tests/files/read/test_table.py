@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from stippler.drawing.dots import Dots
 from stippler.errors import TableError
 from stippler.files.read.table import DEFAULT_RADIUS_MM, NAMES, read_csv
-from stippler.files.table import COLUMNS, csv_chunks
+from stippler.files.write.table import FIRST_COLUMNS, csv_chunks
 
 
 def dots_of(n, seed=6):
@@ -28,9 +28,9 @@ def test_what_is_written_is_read(tmp_path):
     text = b"".join(csv_chunks(dots_of(300)))
     (tmp_path / "dots.csv").write_bytes(text)
     assert b"".join(csv_chunks(read_csv(tmp_path / "dots.csv"))) == text
-    (tmp_path / "none.csv").write_text(COLUMNS + "\n")
+    (tmp_path / "none.csv").write_text(FIRST_COLUMNS + "\n")
     assert len(read_csv(tmp_path / "none.csv")) == 0
-    assert tuple(COLUMNS.split(",")[:9]) == NAMES
+    assert tuple(FIRST_COLUMNS.split(",")[:9]) == NAMES
 
 
 # --- dialects -----------------------------------------------------------------------------------
@@ -185,7 +185,7 @@ _GOOD = "1.0,2.0,0.5,1,0,0,7,0,0"
 )
 def test_a_bad_line_is_named(tmp_path, line, what):
     path = tmp_path / "dots.csv"
-    path.write_bytes(f"{COLUMNS}\n{_GOOD}\n{line}\n{_GOOD}\n".encode("latin-1"))
+    path.write_bytes(f"{FIRST_COLUMNS}\n{_GOOD}\n{line}\n{_GOOD}\n".encode("latin-1"))
     with pytest.raises(TableError, match=f"dots.csv, line 3: .*{what}.*; save") as told:
         read_csv(path)
     assert "\n" not in str(told.value)

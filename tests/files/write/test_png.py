@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from stippler.errors import ParameterError
-from stippler.files.png import png_chunks
+from stippler.files.write.png import png_chunks
 
 
 @given(
@@ -60,7 +60,7 @@ def test_strips_arrive_one_by_one():
     [
         [np.zeros((3, 5), np.uint8)],
         [np.zeros((2, 5), np.uint8), np.zeros((2, 4), np.uint8)],
-        [np.zeros((4, 5, 2), np.uint8)],
+        [np.zeros((4, 5, 5), np.uint8)],
         [np.zeros((4, 5), np.uint16)],
         [],
     ],

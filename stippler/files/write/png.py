@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
+from stippler.files.write.format import Values
+from stippler.files.write.raster import grey_strips, size_px
+from stippler.files.write.sheet import Sheet
 from stippler.units import MM_PER_INCH
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_COLOR_TYPE = {1: 0, 3: 2, 4: 6}
+_COLOR_TYPE = {1: 0, 2: 4, 3: 2, 4: 6}
 # Dots are runs of black and white: without a row filter, run lengths and Huffman codes alone are
 # both the fastest and the smallest of zlib's ways.
 _NO_FILTER = 0
@@ -27,8 +30,8 @@ def png_chunks(
 
     Parameters
     ----------
-    strips : iterable of (rows, width) or (rows, width, 1, 3 or 4) uint8
-        From top to bottom; grey, RGB or RGBA.
+    strips : iterable of (rows, width) or (rows, width, 1 to 4) uint8
+        From top to bottom; grey, grey and alpha, RGB or RGBA.
     size_px : (width, height)
     dpi : float
         Written into the file, so that it prints at the right size.
@@ -71,7 +74,7 @@ def _filtered(rows: NDArray[np.uint8]) -> bytes:
 
 def _header(width: int, height: int, channels: int) -> bytes:
     if channels not in _COLOR_TYPE:
-        raise ParameterError(f"{channels} channels make no picture", "PNG", "give 1, 3 or 4")
+        raise ParameterError(f"{channels} channels make no picture", "PNG", "give 1 to 4")
     fields = struct.pack(">IIBBBBB", width, height, 8, _COLOR_TYPE[channels], 0, 0, 0)
     return _chunk(b"IHDR", fields)
 
@@ -83,3 +86,18 @@ def _density(dpi: float) -> bytes:
 
 def _chunk(kind: bytes, data: bytes) -> bytes:
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
+    """Yield a sheet as PNG, strip by strip; ink on a clear ground where that is asked for."""
+    dpi = float(values["dpi"])
+    size = size_px(sheet, dpi)
+    strips = grey_strips(sheet, dpi)
+    if values["transparent"]:
+        strips = (_on_clear_ground(strip) for strip in strips)
+    return png_chunks(strips, (size.width, size.height), dpi)
+
+
+def _on_clear_ground(greys: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return black of the opacity that looks like these greys on white."""
+    return np.stack([np.zeros_like(greys), 255 - greys], axis=-1)

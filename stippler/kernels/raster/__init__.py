@@ -1,0 +1,1 @@
+"""Filling shapes into rows of bits, without GL."""

@@ -1,0 +1,1 @@
+"""Short ways through many points."""
