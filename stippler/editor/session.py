@@ -134,8 +134,9 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
+        spacing = self.plan.spacing
         request = self._worker.start(
-            lambda: work.relax_drawing(frozen, iterations, weighted=weighted)
+            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
         )
         self._run(Relaxing(request, "relax", self.source, total=iterations))
 

@@ -116,8 +116,13 @@ def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
     yield Work(PREPARE, 1, 1)
 
 
-def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Iterator[Work]:
-    """Relax the free dots of a drawing that nobody else changes, each within its area."""
+def relax_drawing(
+    drawing: Drawing, iterations: int, *, weighted: bool, spacing: str = "even"
+) -> Iterator[Work]:
+    """Relax the free dots of a drawing that nobody else changes, each within its area.
+
+    Spaced evenly by the tone they keep it: see `stippler.stippling.relax_all`.
+    """
     yield Work("relax", 0, iterations)
     import numpy as np
 
@@ -126,17 +131,26 @@ def relax_drawing(drawing: Drawing, iterations: int, *, weighted: bool) -> Itera
 
     dots, reference = drawing.dots, drawing.reference
     used, shape_of_dot = np.unique(dots.area, return_inverse=True)
+    outlines = [drawing.areas[int(k)].outline_mm for k in used]
+    if spacing == "even" and (weighted or reference is None):
+        from stippler.stippling.relax_all import relaxed_all
+
+        run = relaxed_all(
+            dots.position_mm, dots.radius_mm, outlines, dots.fixed, shape_of_dot, reference,
+            iterations,
+        )  # fmt: skip
+        for k, (moved, sizes) in enumerate(run):
+            done = min(k + 1, iterations)
+            yield Work("relax", done, iterations, moved_mm=moved, radius_mm=sizes)
+        return
     density = None
     if weighted and reference is not None:
         # dots settle at the root of their weight
         density = DensityField(np.square(reference.darkness), reference.pixel_mm)
     engine = Relaxation(
-        dots.position_mm,
-        [drawing.areas[int(k)].outline_mm for k in used],
-        dots.fixed,
-        shape_of_dot,
-        density,
-    )
+        dots.position_mm, outlines, dots.fixed, shape_of_dot, density,
+        method="lloyd" if spacing == "even" else spacing,
+    )  # fmt: skip
     for k in range(iterations):
         engine.step()
         yield Work("relax", k + 1, iterations, moved_mm=engine.points)

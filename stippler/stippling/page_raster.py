@@ -133,13 +133,13 @@ class PageRaster:
 
     def radii(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the radius that the rule gives each dot of the page."""
-        return self.rule.radius(self._under(points))
+        return self.rule.radius(self.darkness_under(points))
 
     def wanted_at(
         self, points: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the radius and the density that the rule gives where each dot of the page lies."""
-        values = self._under(points)
+        values = self.darkness_under(points)
         return self.rule.radius(values), self.rule.density(values)
 
     def density_under(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -148,12 +148,13 @@ class PageRaster:
         mirrored = np.column_stack([
             _mirrored(points[:, axis], float(size)) for axis, size in ((0, w), (1, h))
         ])  # fmt: skip
-        density: NDArray[np.float64] = self.rule.density(self._under(mirrored))
+        density: NDArray[np.float64] = self.rule.density(self.darkness_under(mirrored))
         beyond = np.abs(points - 0.5 * np.array([w, h])) > 0.5 * np.array([w, h]) + self.bleed
         density[beyond.any(axis=1)] = 0.0
         return density
 
-    def _under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
+    def darkness_under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Return the darkness of the pixels of the page that dots lie on."""
         values = np.empty(len(points), np.float32)
         points = np.ascontiguousarray(points)
         parallel_for(sample, len(points), points, self.darkness, values)

@@ -153,6 +153,11 @@ class Relaxation:
         self._rules = rules
 
     @property
+    def spacing_mm(self) -> float:
+        """The dots' mean spacing: the root of the area that each has."""
+        return self._cells.spacing
+
+    @property
     def n_failed(self) -> int:
         """How many cells the last step could not carry over from the one before."""
         return self._cells.n_failed

@@ -11,12 +11,11 @@ from stippler.drawing.style import Style
 from stippler.stippling.density import DensityField
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.relax import Relaxation
-from stippler.stippling.spacing import LLOYD, Rules, Wanted, rules_after
+from stippler.stippling.spacing import LLOYD, TO_INK, Rules, Wanted, rules_after
 
 _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
 _BROKEN = 0.35  # of a spacing, by which first dots are moved so that no order is left to them
-_TO_INK = Rules(gain=40.0, low=0.1, least=0.5)  # the last step: each dot to the midst of its ink
 
 Steps = Iterator[tuple[NDArray[np.float64], float]]
 
@@ -90,7 +89,7 @@ def _schedule(n_steps: int, sizes_follow: bool) -> list[Rules]:
     n_first = min(_FIRST_STEPS, n_steps // 3)
     n_last = int(sizes_follow and n_steps > 2)
     middle = [rules_after(k) for k in range(n_steps - n_first - n_last)]
-    return [LLOYD] * n_first + middle + [_TO_INK] * n_last
+    return [LLOYD] * n_first + middle + [TO_INK] * n_last
 
 
 def _with_order_broken(

@@ -60,8 +60,13 @@ class Rules:
 
 RULES = Rules()
 
-_LOOSE = Rules(near=0.84, cap=0.84, hole=1.22, narrow=0.0)
+AT_LAST = Rules(near=0.84, cap=0.84, hole=1.22, narrow=0.0)
+"""The rules that dots come to rest by."""
+
 _TIGHT_STEPS, _LOOSENING_STEPS = 40, 60
+
+TO_INK = Rules(gain=40.0, low=0.1, least=0.5)
+"""The last step: dots go to the midst of their ink, wholly where it is uneven."""
 
 LLOYD = Rules(least=1.0)
 """Lloyd's step, weighted by the field."""
@@ -76,7 +81,7 @@ def rules_after(n_steps: int) -> Rules:
     t = min(max((n_steps - _TIGHT_STEPS) / _LOOSENING_STEPS, 0.0), 1.0)
     if t == 0.0:
         return RULES
-    return Rules(*(a + t * (b - a) for a, b in zip(astuple(RULES), astuple(_LOOSE), strict=True)))
+    return Rules(*(a + t * (b - a) for a, b in zip(astuple(RULES), astuple(AT_LAST), strict=True)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -103,6 +103,7 @@ def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None
 def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
     document = opened(desk, picture)
     session = desk.app.session
+    session.edit_plan(spacing="lloyd")  # which never rests
     start = document.dots.copy()
     desk.host.fill("Iterations", "100000")
     desk.host.click("Relax all")

@@ -16,7 +16,7 @@ from stippler.jobs import work
 from stippler.jobs.work import Source, stipple_picture
 from stippler.stippling.plan import Plan
 
-PLAN = Plan(n_dots=100, iterations=2)
+PLAN = Plan(n_dots=100, iterations=2, spacing="lloyd")
 
 
 def fake_compiler(monkeypatch: pytest.MonkeyPatch, program: str) -> list[subprocess.Popen[str]]:

@@ -1,0 +1,89 @@
+"""*Relax all* keeps the tone of a finished drawing, and what a person has set."""
+
+import numpy as np
+import pytest
+from scipy.spatial import KDTree
+
+from stippler.analysis.tone_error import measure_tone
+from stippler.drawing.reference import Reference
+from stippler.stippling.plan import Plan
+from stippler.stippling.relax_all import relaxed_all
+from stippler.stippling.stipple import stages
+
+W = 100.0
+
+
+@pytest.fixture(scope="module")
+def made():
+    """A drawing of smooth tones and an edge, and its reference."""
+    y, x = np.mgrid[0:240, 0:240] / 240.0
+    darkness = 0.1 + 0.7 * x * (0.6 + 0.4 * np.sin(7 * y))
+    darkness[60:120, 60:150] = 0.8
+    reference = Reference(np.clip(darkness, 0, 1).astype(np.float32), W)
+    *_, last = stages(reference, Plan(n_dots=4000), snapshots=False)
+    return reference, np.array(last.position_mm), np.array(last.radius_mm)
+
+
+def pressed(reference, position, radius, fixed=None, steps=20):
+    n = len(position)
+    page = np.array([(0, 0), (W, 0), (W, W), (0, W)], float)
+    fixed = np.zeros(n, bool) if fixed is None else fixed
+    run = relaxed_all(position, radius, [page], fixed, np.zeros(n, int), reference, steps)
+    sizes = None
+    moved = position
+    for now, found in run:
+        moved, sizes = now, found if found is not None else sizes
+    return np.array(moved), radius if sizes is None else sizes
+
+
+def tone_error(reference, position, radius):
+    px = 240 / W
+    error = measure_tone(position * px, radius.astype(float) * px, reference.darkness)
+    return error.tone_rmse
+
+
+def test_a_finished_drawing_keeps_its_tone_and_is_left_alone_then(made):
+    reference, position, radius = made
+    before = tone_error(reference, position, radius)
+    for _ in range(3):
+        was = position
+        position, radius = pressed(reference, position, radius)
+    assert tone_error(reference, position, radius) <= 1.1 * before
+    again, sizes = pressed(reference, position, radius)
+    assert (np.hypot(*(again - was).T) > 1e-6).mean() < 0.02
+    assert np.abs(sizes - radius).max() < 1e-3
+
+
+def test_dots_spoilt_by_hand_are_evened_out_and_true_again(made):
+    reference, position, radius = made
+    rng = np.random.default_rng(3)
+    mine = np.flatnonzero(np.hypot(*(position - [30, 70]).T) < 12)
+    spoilt = position.copy()
+    spoilt[mine] += rng.normal(0, 0.35, (len(mine), 2))
+    moved, sizes = pressed(reference, spoilt, radius)
+    assert tone_error(reference, moved, sizes) <= 1.02 * tone_error(reference, position, radius)
+    apart = [KDTree(p).query(p[mine], k=2)[0][:, 1].min() for p in (position, spoilt, moved)]
+    assert apart[2] > 0.8 * apart[0] > 1.5 * apart[1]
+
+
+def test_sizes_that_a_person_has_set_stay(made):
+    reference, position, radius = made
+    mine = np.hypot(*(position - [70, 40]).T) < 10
+    own = radius.copy()
+    own[mine] *= np.float32(1.4)
+    fixed = np.zeros(len(position), bool)
+    fixed[::9] = True
+    moved, sizes = pressed(reference, position, own, fixed)
+    assert (sizes[mine] == own[mine]).all()
+    assert (moved[fixed] == position[fixed]).all()
+    assert tone_error(reference, moved, sizes) < tone_error(reference, position, own)
+
+
+def test_without_a_picture_dots_even_out_and_keep_their_sizes():
+    rng = np.random.default_rng(5)
+    position, radius = rng.random((500, 2)) * W, np.full(500, 0.3, np.float32)
+    page = np.array([(0, 0), (W, 0), (W, W), (0, W)], float)
+    run = relaxed_all(position, radius, [page], np.zeros(500, bool), np.zeros(500, int), None, 400)
+    *_, (moved, sizes) = run
+    assert sizes is None
+    assert KDTree(moved).query(moved, k=2)[0][:, 1].min() > 0.6 * W / np.sqrt(500)
