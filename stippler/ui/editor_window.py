@@ -14,6 +14,7 @@ from stippler.editor.events import (
     Dropped,
     Event,
     KeyDown,
+    Pressed,
     Scrolled,
 )
 from stippler.editor.hands import Hands
@@ -22,11 +23,13 @@ from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.rates import FrameRate
 from stippler.editor.schedule import Schedule
+from stippler.editor.selecting import Selecting
 from stippler.editor.session import Session
 from stippler.editor.shaping import Shaping
+from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
-from stippler.ui.actions import commands_for
+from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
@@ -35,7 +38,7 @@ from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
-from stippler.ui.panels.menu import draw_menu
+from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
@@ -94,7 +97,7 @@ class Editor:
         self.shaping = Shaping(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
-        self.popups = Popups(window, session, kept, use_native=native)
+        self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
             {
@@ -107,7 +110,8 @@ class Editor:
             kept.closed,
         )
         self.lens_key = LensKey(self.look)
-        self.commands = self.popups.commands = commands_for(self, session, window)
+        self.menu = MenuBar()
+        self.commands = self.popups.commands = commands_for(self._parts())
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
@@ -116,6 +120,23 @@ class Editor:
         self._preview: Preview | None = None
         self._last_s = clock()
         self._size_px = window.size_px
+
+    def _parts(self) -> Parts:
+        return Parts(
+            self._window,
+            self.session,
+            self.painting,
+            Selecting(self.session, self.painting),
+            self.pointer,
+            self.view,
+            self.look,
+            self.lens_key,
+            self.panels,
+            self.popups,
+            self.show_panel,
+            self.reset_panels,
+            self.panels.turn_focus,
+        )
 
     # --- the loop's two halves --------------------------------------------------------------
 
@@ -209,7 +230,7 @@ class Editor:
 
     def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
-        self._guarded("the menu", lambda: draw_menu(self.widgets, self.commands, recent))
+        self._guarded("the menu", lambda: self.menu.draw(self.widgets, self.commands, recent))
         area = self._layout.draw(self.gui.scale)
         self._place(area)
         for event, for_panels in events:
@@ -265,23 +286,19 @@ class Editor:
         self.panels.show_all()
         self._layout.reset()
 
-    def show_selection(self) -> None:
-        """Look at the chosen dots."""
-        box = self.painting.selected_box()
-        if box is None:
-            self.session.messages.say("no dots are selected", WARNING)
-        else:
-            self.view.show_box(*box)
-
     def _draw_tools(self) -> None:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)
 
+    @property
+    def _overlay(self) -> Overlay:
+        document, camera = self.session.document, self.view.camera
+        return self.painting.toolbox.overlay(document, self.pointer.at_mm, camera.px_per_mm)
+
     def _draw_overlay(self, area: Rect) -> None:
-        overlay = self.painting.toolbox.overlay(self.pointer.at_mm)
-        draw_overlay(overlay, self.view, area, self.gui.scale, self._ratio)
+        draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
-        at_px, tip = self.pointer.at_px, self.painting.toolbox.overlay(self.pointer.at_mm).tip
+        at_px, tip = self.pointer.at_px, self._overlay.tip
         if self.look.lens == "none" or at_px is None or self.session.drawing is None:
             return
         reach_px = tip.brush.radius_mm * self.view.camera.px_per_mm if tip else None
@@ -332,8 +349,10 @@ class Editor:
                 self.popups.filing.quit()
             case KeyDown(key="escape") if self.shaping.let_go():
                 imgui.internal.clear_active_id()
-            case KeyDown() if self.popups.take(event) or for_panels:
+            case KeyDown() if self.menu.take(event) or self.popups.take(event) or for_panels:
                 pass
+            case Pressed(button="right") if not elsewhere and not self.painting.is_busy:
+                self.popups.context.ask()
             case KeyDown() if self.hands.take_key(event) or self.commands.take(event):
                 pass
             case _:

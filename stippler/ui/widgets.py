@@ -87,16 +87,34 @@ class Widgets:
         imgui.same_line(self.indent)
         imgui.set_next_item_width(-1.0)
 
-    def tip(self, text: str) -> None:
-        """Explain the last control when the pointer rests on it, and does not hold it."""
-        if not imgui.is_item_active() and imgui.is_item_hovered(_EXPLAINED):
-            imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
-            if imgui.begin_tooltip():
-                imgui.push_text_wrap_pos(280.0 * self.scale)
-                imgui.text_unformatted(text)
-                imgui.pop_text_wrap_pos()
-                imgui.end_tooltip()
-            imgui.pop_style_var()
+    def tip(self, text: str, *, beside: bool = False) -> None:
+        """Explain the last control while the pointer rests on it, and does not hold it.
+
+        Parameters
+        ----------
+        beside : bool
+            To the right of the control; else below it, or above where there is no room.
+        """
+        if imgui.is_item_active() or not imgui.is_item_hovered(_EXPLAINED):
+            return
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        gap = 4.0 * self.scale
+        size = imgui.calc_text_size(text, wrap_width=280.0 * self.scale)
+        bottom = imgui.get_main_viewport().size.y
+        is_low = high.y + gap + size.y + 14.0 * self.scale > bottom
+        if beside:
+            imgui.set_next_window_pos((high.x + gap, low.y))
+        elif is_low:
+            imgui.set_next_window_pos((low.x, low.y - gap), imgui.Cond_.always, (0.0, 1.0))
+        else:
+            imgui.set_next_window_pos((low.x, high.y + gap))
+        imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
+        if imgui.begin_tooltip():
+            imgui.push_text_wrap_pos(280.0 * self.scale)
+            imgui.text_unformatted(text)
+            imgui.pop_text_wrap_pos()
+            imgui.end_tooltip()
+        imgui.pop_style_var()
 
     def icon_button(self, name: str, icon: str, tip: str) -> bool:
         """Draw a square button with a sign and no text."""

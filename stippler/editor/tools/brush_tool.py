@@ -21,7 +21,17 @@ from stippler.editor.events import (
     Scrolled,
 )
 from stippler.editor.tools.brush_shelf import BrushShelf
-from stippler.editor.tools.tool import NOTHING, RESTING, Desk, Overlay, Point, Tip, Tool, ToolState
+from stippler.editor.tools.tool import (
+    NOTHING,
+    RESTING,
+    Desk,
+    Overlay,
+    Point,
+    Sight,
+    Tip,
+    Tool,
+    ToolState,
+)
 
 if TYPE_CHECKING:
     from stippler.brushes.stroke import Stroke
@@ -96,8 +106,9 @@ class BrushTool(Tool):
                 return RESTING
         return None
 
-    def overlay(self, at_mm: Point | None, mods: Mods) -> Overlay:
+    def overlay(self, sight: Sight) -> Overlay:
         """Return the outline of the tip."""
+        at_mm = sight.at_mm
         return Overlay(tip=Tip(self.brush, at_mm)) if at_mm is not None else NOTHING
 
     def preview(

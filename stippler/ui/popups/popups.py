@@ -9,7 +9,9 @@ from stippler.editor.events import KeyDown
 from stippler.editor.keymap import save_keys
 from stippler.editor.messages import WARNING
 from stippler.editor.session import Session
+from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
+from stippler.ui.popups.context import ContextPalette
 from stippler.ui.popups.file_dialogs import Dialogs
 from stippler.ui.popups.filing import Filing
 from stippler.ui.popups.new_page import NewPage
@@ -27,7 +29,13 @@ class Popups:
     """All of them; `draw` is called in every frame."""
 
     def __init__(
-        self, window: Window, session: Session, kept: Preferences, *, use_native: bool
+        self,
+        window: Window,
+        session: Session,
+        kept: Preferences,
+        toolbox: Toolbox,
+        *,
+        use_native: bool,
     ) -> None:
         self._session, self._kept = session, kept
         self.dialogs = Dialogs(use_native=use_native)
@@ -36,6 +44,7 @@ class Popups:
         self.palette = Palette(kept, self.filing.recent)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
+        self.context = ContextPalette(toolbox)
         self.commands: Commands | None = None
 
     @property
@@ -66,6 +75,7 @@ class Popups:
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
         guarded("the question", lambda: self.filing.guard.draw(widgets))
+        guarded("the palette at the pointer", lambda: self.context.draw(widgets, commands))
         guarded("the palette", lambda: self.palette.draw(widgets, commands))
         guarded("the shortcuts", lambda: self.sheet.draw(widgets, commands))
 
