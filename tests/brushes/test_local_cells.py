@@ -14,7 +14,7 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.page import Page
-from stippler.stippling.fill import Filling, fill_drawing
+from stippler.stippling.initial_points import fill_area
 from stippler.stippling.relax import Relaxation
 from tests.stippling.shapes import comb, points_in
 
@@ -68,7 +68,9 @@ def test_local_cells_are_those_of_the_whole_drawing(seed, n, kind, name, chosen)
 def test_a_row_of_a_hexagonal_fill_stays():
     drawing = Drawing.blank(Page(100, 100))
     document = Document(drawing)
-    fill_drawing(drawing, document, Filling(2000, "hexagonal", 0.4))
+    document.begin("Fill")
+    document.insert(Dots.round(fill_area(drawing.outlines()[0], 2000, "hexagonal", 1), 0.4))
+    document.commit()
     y = np.unique(document.dots.position_mm[:, 1])[20]
     corners = [(30, y - 0.3), (70, y - 0.3), (70, y + 0.3), (30, y + 0.3)]
     ids = selection.in_outline(document, corners)
