@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
+from functools import partial
 
 import numpy as np
 import shapely
@@ -168,6 +169,6 @@ def _areas() -> list[Figure]:
     ]  # fmt: skip
     for name, partition, own in (("1 area", one, np.zeros(220, np.int32)),
                                  ("200 areas", many, area)):  # fmt: skip
-        ms = median_s(lambda p=partition, a=own: p.confine(some, some + 0.01, a), 99) * 1e3
+        ms = median_s(partial(partition.confine, some, some + 0.01, own), 99) * 1e3
         found.append(Figure(f"keeping a stamp's 220 dots in their areas, {name}", ms, "ms", 0.2))
     return found
