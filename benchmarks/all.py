@@ -21,6 +21,7 @@ TOPICS = (
     "relaxation",
     "first_dots",
     "quality",
+    "grain",
     "tone",
     "rendering",
     "editor",
