@@ -24,6 +24,7 @@ TOPICS = (
     "grain",
     "tone",
     "rendering",
+    "exports",
     "editor",
     "brushes",
     "view",

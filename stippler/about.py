@@ -29,7 +29,8 @@ def lines() -> Iterator[str]:
     yield f"libraries  {', '.join(f'{name} {metadata.version(name)}' for name in _LIBRARIES)}"
     yield f"shaders    {resources.shaders()}"
     yield f"assets     {resources.assets()}"
-    yield f"kernels    {cache_root()} ({'compiled' if is_warm() else 'not compiled yet'})"
+    state = "compiled for this processor" if is_warm() else "not compiled yet for this processor"
+    yield f"kernels    {cache_root()} ({state})"
 
 
 def _gl() -> Iterator[str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.exceptions import TyperException
 
+from stippler.cli_check import calibrate, check
 from stippler.cli_options import export_names, with_export_options
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.machine.numba_import import skip_blas
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 _INTERRUPTED = 130
-COMMANDS = ("edit", "render", "stats", "bench", "info")
+COMMANDS = ("edit", "render", "stats", "check", "calibrate", "bench", "info")
 
 app = typer.Typer(
     add_completion=False,
@@ -139,7 +140,9 @@ def _given(context: typer.Context) -> set[str]:
 @app.command()
 def edit(
     context: typer.Context,
-    file: Annotated[Path | None, typer.Argument(help="A picture; without one, a sample.")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(help="A picture or a drawing; without one, a sample.")
+    ] = None,
     dots: Dots = None,
     size_range: SizeRange = None,
     width: Width = DEFAULT_WIDTH_MM,
@@ -173,8 +176,10 @@ def edit(
     with at_hand(file or _sample()) as picture:
         if file is not None:
             from stippler.files.read.picture import check_picture
+            from stippler.opening import is_drawing
 
-            check_picture(picture)  # before a window opens
+            if not is_drawing(picture):
+                check_picture(picture)  # before a window opens
         from stippler.app import edit as open_editor
 
         raise typer.Exit(open_editor(picture, plan, tone=tone, width_mm=width, given=given))
@@ -329,6 +334,10 @@ def stats(
             for note in notes:
                 _note(file, note)
     typer.echo(statistics.as_json(report) if as_json else statistics.as_text(report))
+
+
+app.command()(check)
+app.command()(calibrate)
 
 
 @app.command()

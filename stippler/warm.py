@@ -1,11 +1,14 @@
 """Compiling all kernels once a machine, so that nothing waits for it later.
 
-``python -m stippler.warm`` prints a line of progress and does nothing when the kernels are there.
+``python -m stippler.warm`` prints a line of progress and does nothing when the kernels are there;
+with ``--levels`` it makes those that a wheel carries.
 """
 
 from __future__ import annotations
 
 import contextlib
+import os
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -14,32 +17,91 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.errors import DisplayError
+from stippler.kernels.machine import store
 from stippler.kernels.machine.cache import all_digest, cache_root
 from stippler.kernels.machine.numba_import import skip_blas
+from stippler.kernels.machine.pool import n_threads
+from stippler.kernels.machine.processor import processor_key
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
+    from stippler.drawing.reference import Reference
 
 
 def is_warm() -> bool:
-    """Return whether this version's kernels lie compiled on disk; cheap, imports no numba."""
-    return _mark().exists()
+    """Return whether this version's kernels lie compiled for this processor; imports no numba."""
+    return store.is_complete() if store.can_load() else _mark().exists()
 
 
-def warm(show: Callable[[str, int, int], None]) -> None:
-    """Compile every kernel by using it on something small; tell what is done, and how much."""
+def warm(show: Callable[[str, int, int], None], target: Path | None = None) -> None:
+    """Compile every kernel by using it on something small; tell what is done, and how much.
+
+    A second process begins at the other end where there are cores for it. `target`: the store to
+    make, instead of this machine's own.
+    """
+    if not store.can_load():
+        _run_parts(show)
+        _mark().parent.mkdir(parents=True, exist_ok=True)
+        _mark().touch()
+        return
+    from stippler.kernels.machine import export
+
+    objects = cache_root() / f"objects-{processor_key()}"
+    objects.mkdir(parents=True, exist_ok=True)
+    helper = _second_process(objects) if n_threads() > 1 else None
+    try:
+        with export.recording(objects):
+            _run_parts(show)
+            export.save_list()
+    finally:
+        if helper is not None:
+            helper.kill()
+            helper.wait()
+    export.finish(objects, target or store.local_store())
+
+
+def warm_levels(show: Callable[[str, int, int], None]) -> None:
+    """Make the stores that a wheel carries: for each level of processors that runs here."""
+    from stippler.kernels.machine.processor import level, levels
+
+    known = levels()
+    for name in known[known.index(level()) :]:
+        subprocess.run(
+            [sys.executable, "-m", "stippler.warm", "--into", str(store.packed_stores() / name)],
+            env={**os.environ, "NUMBA_CPU_NAME": name, "NUMBA_CPU_FEATURES": ""},
+            check=True,
+        )
+        show(name, known.index(name) + 1, len(known))
+
+
+def _second_process(objects: Path) -> subprocess.Popen[bytes]:
+    """Start a process that compiles from the other end; what it has made is found by the first."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "stippler.warm", "--backwards", str(objects)],
+        env={**os.environ, "STIPPLER_KERNELS": "new"},
+        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+
+
+def _run_parts(show: Callable[[str, int, int], None]) -> None:
     parts = list(_parts())
     for k, (name, run) in enumerate(parts):
         show(name, k, len(parts))
         run()
     show("done", len(parts), len(parts))
-    mark = _mark()
-    mark.parent.mkdir(parents=True, exist_ok=True)
-    mark.touch()
+
+
+def _run_backwards(objects: Path) -> None:
+    """Do the parts from the last to the first."""
+    from stippler.kernels.machine import export
+
+    with export.recording(objects):
+        for _, run in reversed(list(_parts())):
+            run()
 
 
 def _mark() -> Path:
-    return cache_root() / f"complete-{all_digest()}"
+    return cache_root() / f"complete-{all_digest()}-{processor_key()}"
 
 
 def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
@@ -64,7 +126,16 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
     yield "brushes", warm_up_brushes
-    yield "files", lambda: _write(draw())
+    yield "files", lambda: _write(_some_dots(reference))
+
+
+def _some_dots(reference: Reference) -> Drawing:
+    import numpy as np
+
+    from stippler.drawing.drawing import Drawing
+
+    position = np.random.default_rng(0).random((300, 2)) * reference.width_mm
+    return Drawing.from_reference(reference, position, np.full(300, 0.3, np.float32))
 
 
 def _relax_a_cluster() -> None:
@@ -101,8 +172,17 @@ def _write(drawing: Drawing) -> None:
 
 def _main() -> None:
     skip_blas()
-    if is_warm():
+    if sys.argv[1:2] == ["--backwards"]:
+        _run_backwards(Path(sys.argv[2]))
         return
+    if sys.argv[1:2] == ["--levels"]:
+        warm_levels(lambda name, done, total: print(f"Kernels for {name}: {done}/{total}"))  # noqa: T201
+        return
+    target = Path(sys.argv[2]) if sys.argv[1:2] == ["--into"] else None
+    if target is None and is_warm():
+        return
+    os.environ["STIPPLER_KERNELS"] = "new"  # of a store that is not complete nothing is used
+    store.stores.cache_clear()
     start = time.perf_counter()
 
     def show(name: str, done: int, total: int) -> None:
@@ -111,7 +191,11 @@ def _main() -> None:
         sys.stderr.write(f"{line:<78}{end}" if sys.stderr.isatty() else f"{line}\n")
         sys.stderr.flush()
 
-    warm(show)
+    try:
+        warm(show, target)
+    except OSError as error:
+        sys.stderr.write(f"The kernels cannot be kept ({error}); each start compiles them.\n")
+        return
     sys.stderr.write(f"Ready after {time.perf_counter() - start:.0f} s.\n")
 
 

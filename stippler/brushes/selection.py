@@ -12,7 +12,7 @@ from stippler.brushes.jitter import jitter
 from stippler.brushes.local_cells import centroids_of
 from stippler.brushes.shape import reshape, resized
 from stippler.drawing.document import Document
-from stippler.drawing.dots import FIXED, FREE, NO_CURVE
+from stippler.drawing.dots import FIXED, FREE, NO_CURVE, Dots
 from stippler.drawing.store import Rows
 
 Ids = NDArray[np.int64]
@@ -62,6 +62,20 @@ def duplicate(document: Document, ids: Ids) -> Ids:
     """Add a free copy of each dot a little to the side; return the copies' ids."""
     dots = document.dots.take(alive(document, ids))
     dots.position_mm += _DUPLICATE_SHIFT_MM
+    dots.constraint[:] = FREE
+    rows = document.insert(dots)
+    return np.array(document.dots.id[rows])
+
+
+def paste(document: Document, copied: Dots, at_mm: Point | None, n: int) -> Ids:
+    """Add copied dots about a point, or n steps beside where they were; return their ids.
+
+    Those that would lie off the page are left out.
+    """
+    dots = copied.copy()
+    low, high = dots.position_mm.min(axis=0), dots.position_mm.max(axis=0)
+    shift = (n * _DUPLICATE_SHIFT_MM,) * 2 if at_mm is None else at_mm - (low + high) / 2
+    dots.position_mm += shift
     dots.constraint[:] = FREE
     rows = document.insert(dots)
     return np.array(document.dots.id[rows])

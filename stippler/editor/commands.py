@@ -83,6 +83,8 @@ class Command:
         Whether what it turns on and off is on.
     detail : str
         Said beside the label where there is room.
+    repeats : bool
+        Whether it is run again and again while its key is held.
     short : str
         As a button says it, where what it is for is clear; the label if not given.
     tip : str
@@ -96,6 +98,7 @@ class Command:
     can: Callable[[], bool] | None = None
     is_on: Callable[[], bool] | None = None
     detail: str = ""
+    repeats: bool = False
     short: str = ""
     tip: str = ""
 
@@ -200,10 +203,10 @@ class Commands:
         self._by_key.update(dict.fromkeys(keys, name))
 
     def take(self, event: KeyDown) -> bool:
-        """Run the command of a key; return whether it has one. Held keys do not repeat."""
+        """Run the command of a key; return whether it has one."""
         command = self.owner(Key(event.key, event.mods))
         if command is None:
             return False
-        if not event.repeated:
+        if command.repeats or not event.repeated:
             command.run()
         return True

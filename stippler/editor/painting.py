@@ -13,6 +13,7 @@ from stippler.brushes.presets import presets_path
 from stippler.camera import Point
 from stippler.editor.events import LEFT, NO_MODS, Event, KeyDown, Pressed
 from stippler.editor.messages import ERROR, WARNING
+from stippler.editor.selection_memory import SelectionMemory
 from stippler.editor.session import Session
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
@@ -36,6 +37,7 @@ class Painting:
     def __init__(self, session: Session) -> None:
         self._session = session
         self.toolbox = Toolbox(presets_path(), session.messages.say)
+        self._memory = SelectionMemory(self.toolbox.selection)
         self._document: Document | None = None
 
     @property
@@ -58,11 +60,14 @@ class Painting:
         self, event: Event, page: Callable[[float, float], Point], px_per_mm: float
     ) -> bool:
         assert self._document is not None
+        self._memory.note(self._document)
         try:
             return self.toolbox.take(event, self._document, page, px_per_mm)
         except Exception as error:  # noqa: BLE001 - the stroke is taken back; the editor lives on
             self._report(error)
             return True
+        finally:
+            self._memory.keep(self._document)
 
     def tick(self, now_s: float) -> None:
         """Let time go on."""
@@ -119,7 +124,7 @@ class Painting:
             rows = alive(document, self._ids) if selected else np.arange(len(document.dots))
             reshape(document, rows, change)
 
-        self._act(label, act)
+        self.act(label, act)
 
     # --- the selection ----------------------------------------------------------------------
 
@@ -155,7 +160,7 @@ class Painting:
         """Remove the chosen dots."""
         from stippler.brushes import selection
 
-        self._act("Delete selection", lambda e: selection.delete(e, self._ids))
+        self.act("Delete selection", lambda e: selection.delete(e, self._ids))
 
     def duplicate(self) -> None:
         """Copy the chosen dots, and choose the copies."""
@@ -165,20 +170,20 @@ class Painting:
             copies = selection.duplicate(document, self._ids)
             self.toolbox.selection.choose(copies, NO_MODS)
 
-        self._act("Duplicate selection", act)
+        self.act("Duplicate selection", act)
 
     def fix(self, fixed: bool) -> None:
         """Fix or free the chosen dots."""
         from stippler.brushes import selection
 
         label = "Fix selection" if fixed else "Free selection"
-        self._act(label, lambda e: selection.fix(e, self._ids, fixed))
+        self.act(label, lambda e: selection.fix(e, self._ids, fixed))
 
     def relax(self) -> None:
         """Relax the chosen dots by one step."""
         from stippler.brushes import selection
 
-        self._act("Relax selection", lambda e: selection.relax(e, self._ids))
+        self.act("Relax selection", lambda e: selection.relax(e, self._ids))
 
     def jitter(self) -> None:
         """Shift the chosen dots at random."""
@@ -186,23 +191,24 @@ class Painting:
 
         seed = zlib.crc32(self._ids.tobytes()) + len(self._session.messages.log)
         rng = np.random.default_rng(seed)
-        self._act("Jitter selection", lambda e: selection.shake(e, self._ids, rng))
+        self.act("Jitter selection", lambda e: selection.shake(e, self._ids, rng))
 
     def resize(self, percent: float) -> None:
         """Enlarge the chosen dots, or reduce them below 0."""
         from stippler.brushes import selection
 
-        self._act("Resize selection", lambda e: selection.resize(e, self._ids, percent))
+        self.act("Resize selection", lambda e: selection.resize(e, self._ids, percent))
 
     @property
     def _ids(self) -> NDArray[np.int64]:
         return self.toolbox.selection.ids
 
-    def _act(self, label: str, act: Action) -> None:
+    def act(self, label: str, act: Action) -> None:
         """Do something as a stroke of its own, whole or not at all."""
         document = self._document
         if document is None or not self._session.paintable or self.is_busy:
             return
+        self._memory.note(document)
         document.begin(label)
         try:
             act(document)
@@ -211,6 +217,7 @@ class Painting:
             self._report(error)
             return
         document.commit()
+        self._memory.keep(document)
 
     # --- the history ------------------------------------------------------------------------
 
@@ -221,23 +228,33 @@ class Painting:
             return
         history = document.history
         while (before := history.n_done) > n_done and self._session.paintable:
-            self._session.undo()
+            self.undo()
             if history.n_done != before - 1:
                 return  # steps were lost, which is said
         while (before := history.n_done) < min(n_done, len(history.steps)):
-            self._session.redo()
+            self.redo()
             if history.n_done == before:
                 return
 
     def undo(self) -> None:
         """Take the last step back; not within a stroke."""
-        if not self.is_busy:
-            self._session.undo()
+        if self.is_busy or self._session.document is None:
+            return
+        history = self._session.document.history
+        step = history.undone
+        self._session.undo()
+        if step is not None and history.undone is not step:
+            self._memory.undone(step)
 
     def redo(self) -> None:
         """Do the last undone step again."""
-        if not self.is_busy:
-            self._session.redo()
+        if self.is_busy or self._session.document is None:
+            return
+        history = self._session.document.history
+        step = history.redone
+        self._session.redo()
+        if step is not None and history.redone is not step:
+            self._memory.redone(step)
 
     def leave(self, event: KeyDown) -> bool:
         """Take Escape while nothing is held: first the selection goes, then the brush."""

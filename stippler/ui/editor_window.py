@@ -14,6 +14,7 @@ from stippler.editor.events import (
     Dropped,
     Event,
     KeyDown,
+    Pressed,
     Scrolled,
 )
 from stippler.editor.hands import Hands
@@ -22,11 +23,13 @@ from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.rates import FrameRate
 from stippler.editor.schedule import Schedule
+from stippler.editor.selecting import Selecting
 from stippler.editor.session import Session
 from stippler.editor.shaping import Shaping
+from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
-from stippler.ui.actions import commands_for
+from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
@@ -35,7 +38,7 @@ from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
-from stippler.ui.panels.menu import draw_menu
+from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
@@ -58,6 +61,7 @@ _LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
+_KEEP_EVERY_S = 5.0  # preferences are looked at no more often than this
 _REST_FRAMES = 2  # of the panels, until what one part of a batch has opened is there for the next
 
 
@@ -94,7 +98,7 @@ class Editor:
         self.shaping = Shaping(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
-        self.popups = Popups(window, session, kept, use_native=native)
+        self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
             {
@@ -107,15 +111,35 @@ class Editor:
             kept.closed,
         )
         self.lens_key = LensKey(self.look)
-        self.commands = self.popups.commands = commands_for(self, session, window)
+        self.menu = MenuBar()
+        self.commands = self.popups.commands = commands_for(self._parts())
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
         self._schedule, self._rate = Schedule(), FrameRate()
         self._ratio = 1.0
         self._preview: Preview | None = None
-        self._last_s = clock()
+        self._last_s = self._kept_s = clock()
+        self._may_have_changed = False  # since preferences were last looked at
+        self._keep_failure = ""
         self._size_px = window.size_px
+
+    def _parts(self) -> Parts:
+        return Parts(
+            self._window,
+            self.session,
+            self.painting,
+            Selecting(self.session, self.painting),
+            self.pointer,
+            self.view,
+            self.look,
+            self.lens_key,
+            self.panels,
+            self.popups,
+            self.show_panel,
+            self.reset_panels,
+            self.panels.turn_focus,
+        )
 
     # --- the loop's two halves --------------------------------------------------------------
 
@@ -136,6 +160,7 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
+            self._may_have_changed = True
         if self.session.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
@@ -161,6 +186,7 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
+        self.popups.recovery.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
@@ -201,7 +227,11 @@ class Editor:
         self.gui.dress(self.look)
         fed = [(event, self.gui.feed(event)) for event in events]
         self.widgets = Widgets(
-            self.look.theme, self.gui.fonts, self.gui.scale, self.gui.escape_level
+            self.look.theme,
+            self.gui.fonts,
+            self.gui.scale,
+            self.gui.escape_level,
+            lambda text: self.session.messages.say(text, WARNING),
         )
         failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
         if failure is not None:
@@ -209,7 +239,7 @@ class Editor:
 
     def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
-        self._guarded("the menu", lambda: draw_menu(self.widgets, self.commands, recent))
+        self._guarded("the menu", lambda: self.menu.draw(self.widgets, self.commands, recent))
         area = self._layout.draw(self.gui.scale)
         self._place(area)
         for event, for_panels in events:
@@ -265,23 +295,19 @@ class Editor:
         self.panels.show_all()
         self._layout.reset()
 
-    def show_selection(self) -> None:
-        """Look at the chosen dots."""
-        box = self.painting.selected_box()
-        if box is None:
-            self.session.messages.say("no dots are selected", WARNING)
-        else:
-            self.view.show_box(*box)
-
     def _draw_tools(self) -> None:
         draw_tools(self.widgets, self.painting.toolbox, self.commands)
 
+    @property
+    def _overlay(self) -> Overlay:
+        document, camera = self.session.document, self.view.camera
+        return self.painting.toolbox.overlay(document, self.pointer.at_mm, camera.px_per_mm)
+
     def _draw_overlay(self, area: Rect) -> None:
-        overlay = self.painting.toolbox.overlay(self.pointer.at_mm)
-        draw_overlay(overlay, self.view, area, self.gui.scale, self._ratio)
+        draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
-        at_px, tip = self.pointer.at_px, self.painting.toolbox.overlay(self.pointer.at_mm).tip
+        at_px, tip = self.pointer.at_px, self._overlay.tip
         if self.look.lens == "none" or at_px is None or self.session.drawing is None:
             return
         reach_px = tip.brush.radius_mm * self.view.camera.px_per_mm if tip else None
@@ -332,8 +358,10 @@ class Editor:
                 self.popups.filing.quit()
             case KeyDown(key="escape") if self.shaping.let_go():
                 imgui.internal.clear_active_id()
-            case KeyDown() if self.popups.take(event) or for_panels:
+            case KeyDown() if self.menu.take(event) or self.popups.take(event) or for_panels:
                 pass
+            case Pressed(button="right") if not elsewhere and not self.painting.is_busy:
+                self.popups.context.ask()
             case KeyDown() if self.hands.take_key(event) or self.commands.take(event):
                 pass
             case _:
@@ -348,8 +376,8 @@ class Editor:
         for problem in filter(None, problems):
             self.session.messages.say(problem, WARNING)
 
-    def _keep(self) -> None:
-        """Write the preferences, if they have changed."""
+    def _keep(self, *, again: bool = True) -> None:
+        """Write the preferences, if they have changed; `again` repeats what has failed before."""
         kept = self._kept
         kept.note_values(self.session)
         kept.place = self._window.place
@@ -357,7 +385,9 @@ class Editor:
         try:
             kept.keep()
         except StipplerError as error:
-            self.session.messages.say(str(error), WARNING)
+            if again or str(error) != self._keep_failure:
+                self.session.messages.say(str(error), WARNING)
+            self._keep_failure = str(error)
 
     # --- what may go wrong, and what comes later ----------------------------------------------
 
@@ -376,6 +406,18 @@ class Editor:
         text = f"{where} failed ({type(error).__name__}: {what}); the drawing is safe"
         self.session.messages.say(text, ERROR, error)
 
+    def _keep_soon(self, now_s: float) -> None:
+        """Write brushes and preferences that have changed some seconds ago."""
+        if (at_s := self.painting.toolbox.save_soon(now_s)) is not None:
+            self._schedule.wake_at(at_s)
+        if not self._may_have_changed:
+            return
+        if now_s - self._kept_s > _KEEP_EVERY_S:
+            self._kept_s, self._may_have_changed = now_s, False
+            self._keep(again=False)
+        else:
+            self._schedule.wake_at(self._kept_s + _KEEP_EVERY_S + 0.01)
+
     def _plan_wakes(self) -> None:
         now = self._clock()
         message = self.session.messages
@@ -383,5 +425,6 @@ class Editor:
             self._schedule.wake_at(now + message.left_s + 0.01)
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
+        self._keep_soon(now)
         if self.popups.dialogs.waiting:
             self._schedule.wake_at(now + _ANSWER_S)

@@ -6,17 +6,23 @@ find it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
 
+from stippler.editor.numbers import parse_number
+from stippler.errors import ParameterError
 from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
 
 Rect = tuple[float, float, float, float]
 LABEL_WIDTH = 84.0
 _MARK_ALL = imgui.InputTextFlags_.auto_select_all
 _EXPLAINED = imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
+
+
+def _nothing(_: str) -> None:
+    pass
 
 
 @dataclass(slots=True)
@@ -27,6 +33,8 @@ class Widgets:
     ----------
     escape_level : int
         How many popups were open when Esc was pressed in this frame; 0 if it was not.
+    refuse : callable
+        Tells the person why what was typed is not taken.
     marks : dict
         Label to (x0, y0, x1, y1), in ImGui's coordinates, of what was drawn this frame.
     rooms : dict
@@ -37,6 +45,7 @@ class Widgets:
     fonts: Fonts
     scale: float
     escape_level: int = 0
+    refuse: Callable[[str], None] = _nothing
     marks: dict[str, Rect] = field(default_factory=dict)
     rooms: dict[str, Rect] = field(default_factory=dict)
 
@@ -87,16 +96,34 @@ class Widgets:
         imgui.same_line(self.indent)
         imgui.set_next_item_width(-1.0)
 
-    def tip(self, text: str) -> None:
-        """Explain the last control when the pointer rests on it, and does not hold it."""
-        if not imgui.is_item_active() and imgui.is_item_hovered(_EXPLAINED):
-            imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
-            if imgui.begin_tooltip():
-                imgui.push_text_wrap_pos(280.0 * self.scale)
-                imgui.text_unformatted(text)
-                imgui.pop_text_wrap_pos()
-                imgui.end_tooltip()
-            imgui.pop_style_var()
+    def tip(self, text: str, *, beside: bool = False) -> None:
+        """Explain the last control while the pointer rests on it, and does not hold it.
+
+        Parameters
+        ----------
+        beside : bool
+            To the right of the control; else below it, or above where there is no room.
+        """
+        if imgui.is_item_active() or not imgui.is_item_hovered(_EXPLAINED):
+            return
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        gap = 4.0 * self.scale
+        size = imgui.calc_text_size(text, wrap_width=280.0 * self.scale)
+        bottom = imgui.get_main_viewport().size.y
+        is_low = high.y + gap + size.y + 14.0 * self.scale > bottom
+        if beside:
+            imgui.set_next_window_pos((high.x + gap, low.y))
+        elif is_low:
+            imgui.set_next_window_pos((low.x, low.y - gap), imgui.Cond_.always, (0.0, 1.0))
+        else:
+            imgui.set_next_window_pos((low.x, high.y + gap))
+        imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
+        if imgui.begin_tooltip():
+            imgui.push_text_wrap_pos(280.0 * self.scale)
+            imgui.text_unformatted(text)
+            imgui.pop_text_wrap_pos()
+            imgui.end_tooltip()
+        imgui.pop_style_var()
 
     def icon_button(self, name: str, icon: str, tip: str) -> bool:
         """Draw a square button with a sign and no text."""
@@ -193,27 +220,32 @@ class Widgets:
 
     def number(self, label: str, value: int, tip: str, *, spare: float = 0.0) -> int:
         """Take a whole number; it counts when Enter is pressed or the field is left."""
-        self.label(label)
-        if spare:
-            imgui.set_next_item_width(-spare)
-        _, typed = imgui.input_int(f"##{label}", value, 0, 0, _MARK_ALL)
-        done = imgui.is_item_deactivated_after_edit()
-        self.note(label)
-        self.tip(tip)
-        return typed if done else value
+        typed = self._typed(label, f"{value}", "", tip, spare)
+        return value if typed is None else round(typed)
 
     def length(
         self, label: str, value: float, tip: str, unit: str = "mm", *, spare: float = 0.0
     ) -> float:
         """Take a number with a unit; it counts when Enter is pressed or the field is left."""
+        typed = self._typed(label, f"{value:.4g} {unit}", unit, tip, spare)
+        return value if typed is None else typed
+
+    def _typed(self, label: str, shown: str, unit: str, tip: str, spare: float) -> float | None:
+        """Draw a field for a number; return what was typed, None while nothing was."""
         self.label(label)
         if spare:
             imgui.set_next_item_width(-spare)
-        _, typed = imgui.input_float(f"##{label}", value, 0.0, 0.0, f"%.4g {unit}", _MARK_ALL)
+        _, text = imgui.input_text(f"##{label}", shown, _MARK_ALL)
         done = imgui.is_item_deactivated_after_edit()
         self.note(label)
         self.tip(tip)
-        return typed if done else value
+        if not done or text == shown:
+            return None
+        try:
+            return parse_number(text, unit)
+        except ParameterError as error:
+            self.refuse(f"{label}: {error}")
+            return None
 
     def share(self, label: str, value: float, tip: str) -> float:
         """Take a share of 0..1, shown in percent, by dragging in the rest of the line."""

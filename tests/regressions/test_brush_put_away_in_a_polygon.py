@@ -21,7 +21,7 @@ def test_nothing_is_held_any_more(tmp_path):
     box.tool.set("how", "polygon")
     for x in (10.0, 50.0):
         box.take(Pressed(LEFT, x, 10.0, x), document, lambda x, y: (x, y), 1.0)
-    assert len(box.overlay(None).paths[0].points_mm) == 3
+    assert len(box.state.overlay.paths[0].points_mm) == 3
     box.choose("")
     assert not box.is_busy
     escape = KeyDown("escape")

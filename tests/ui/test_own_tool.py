@@ -33,8 +33,8 @@ class RowTool(Tool):
             return Rowing(self, desk.at(event), desk.at(event))
         return None
 
-    def overlay(self, at_mm, mods):
-        return Overlay(handles=(Handle(at_mm),)) if at_mm else NOTHING
+    def overlay(self, sight):
+        return Overlay(handles=(Handle(sight.at_mm),)) if sight.at_mm else NOTHING
 
 
 @dataclass(slots=True)

@@ -289,9 +289,9 @@ def test_a_press_on_a_panel_is_no_corner_of_a_polygon(desk, picture):
     desk.host.settle()
     desk.host.click((600, 300))
     desk.host.click((700, 300))
-    n = len(toolbox.overlay(None).paths[0].points_mm)
+    n = len(toolbox.state.overlay.paths[0].points_mm)
     desk.host.click((150, 690))  # beneath the controls of the panel at the left
-    assert len(toolbox.overlay(None).paths[0].points_mm) == n
+    assert len(toolbox.state.overlay.paths[0].points_mm) == n
     desk.host.click("No tool")
     assert not desk.app.editor.painting.is_busy
     desk.host.key("r")  # the keyboard has not been left with the polygon

@@ -202,7 +202,7 @@ def test_selecting_by_rectangle_lasso_polygon_and_area(hands):
     hands.at(Pressed, (5, 5), SHIFT)  # with Shift, or a chosen dot would be carried
     for place in ((20, 5), (20, 25), (5, 25), (5, 5)):
         hands.at(Moved, place)
-    assert len(hands.box.overlay(None).paths[0].points_mm) > 3
+    assert len(hands.box.state.overlay.paths[0].points_mm) > 3
     hands.at(Released, (5, 5))
     assert set(hands.box.selection.ids) == box
     hands.box.selection.choose(np.empty(0, np.int64), Mods())
@@ -292,6 +292,15 @@ def test_pressure_comes_from_a_key_or_from_speed(hands):
     assert slow > 0.95
     assert fast < 0.5
     hands.key("escape")
+
+
+def test_spray_says_why_it_adds_nothing(hands):
+    hands.use("spray", values={"per_s": 300.0, "apart_mm": 5.0})
+    hands.drag((20, 15), (20, 15))
+    assert not hands.labels
+    ((level, text),) = hands.said
+    assert "5 mm" in text
+    assert level == "warning"
 
 
 class ToolMachine(RuleBasedStateMachine):

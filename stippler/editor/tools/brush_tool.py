@@ -20,8 +20,19 @@ from stippler.editor.events import (
     Released,
     Scrolled,
 )
+from stippler.editor.messages import WARNING
 from stippler.editor.tools.brush_shelf import BrushShelf
-from stippler.editor.tools.tool import NOTHING, RESTING, Desk, Overlay, Point, Tip, Tool, ToolState
+from stippler.editor.tools.tool import (
+    NOTHING,
+    RESTING,
+    Desk,
+    Overlay,
+    Point,
+    Sight,
+    Tip,
+    Tool,
+    ToolState,
+)
 
 if TYPE_CHECKING:
     from stippler.brushes.stroke import Stroke
@@ -96,8 +107,9 @@ class BrushTool(Tool):
                 return RESTING
         return None
 
-    def overlay(self, at_mm: Point | None, mods: Mods) -> Overlay:
+    def overlay(self, sight: Sight) -> Overlay:
         """Return the outline of the tip."""
+        at_mm = sight.at_mm
         return Overlay(tip=Tip(self.brush, at_mm)) if at_mm is not None else NOTHING
 
     def preview(
@@ -189,17 +201,22 @@ class Stroking:
             case Moved():
                 self.stroke.follow(self._sample(event, desk))
             case Released(button=button) if button == LEFT:
-                return self._ended(self._sample(event, desk))
+                return self._ended(self._sample(event, desk), desk)
             case FocusLost():
-                return self._ended(self.stroke.end)
+                return self._ended(self.stroke.end, desk)
             case KeyDown(key="escape"):
                 self.stroke.cancel()
                 return RESTING
         return self
 
-    def _ended(self, sample: PointerSample) -> ToolState:
-        self.stroke.commit(sample)
+    def _ended(self, sample: PointerSample, desk: Desk) -> ToolState:
+        edit = self.stroke.commit(sample)
         self.tool.last_end = sample
+        brush = self.tool.in_hand(desk.mods)
+        about = brush.about
+        if edit.is_empty and about.nothing:
+            values = {p.name: brush.value(p.name) for p in about.parameters}
+            desk.say(about.nothing.format(**values), WARNING)
         return RESTING
 
     @property

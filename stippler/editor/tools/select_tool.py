@@ -1,4 +1,4 @@
-"""The selection: dots chosen by an outline or an area, and carried."""
+"""The selection: dots chosen by an outline or an area, and taken hold of."""
 
 from __future__ import annotations
 
@@ -16,19 +16,30 @@ from stippler.editor.events import (
     Pressed,
     Released,
 )
-from stippler.editor.tools.tool import NOTHING, RESTING, Desk, Overlay, Path, Point, Tool, ToolState
+from stippler.editor.tools import selection_grips
+from stippler.editor.tools.tool import (
+    NOTHING,
+    RESTING,
+    Desk,
+    Overlay,
+    Path,
+    Point,
+    Sight,
+    Tool,
+    ToolState,
+)
 
 _STILL_PX = 4.0  # a press that moves less is a click
 _DOUBLE_S = 0.35
-_NEAR_PX = 8.0
 
 
 class SelectTool(Tool):
     """Chooses dots, and moves the chosen ones."""
 
     name, label, key = "select", "Select", "m"
-    tip = "Selects dots; Shift adds, Alt takes away."
+    tip = "Selects dots; Shift adds, Alt takes away. Drag what is selected, or its handles."
     commands = (
+        "selection.invert", "selection.grow", "selection.copy", "selection.paste",
         "selection.delete", "selection.duplicate", "selection.fix", "selection.free",
         "selection.relax", "selection.jitter", "selection.enlarge", "selection.reduce",
     )  # fmt: skip
@@ -53,9 +64,8 @@ class SelectTool(Tool):
             return None
         at = desk.at(event)
         plain = not (event.mods.shift or event.mods.alt)
-        if plain and _on_selected(at, desk):
-            desk.document.begin("Move selection")
-            return Carrying(at)
+        if plain and (grip := selection_grips.taken(event, desk)) is not None:
+            return grip
         how = self.value("how")
         if how == "area":
             from stippler.brushes.selection import in_area
@@ -66,13 +76,9 @@ class SelectTool(Tool):
             return Cornering([at], event.mods, at, event.t_s)
         return Outlining(how, [at], event.mods, (event.x_px, event.y_px))
 
-
-def _on_selected(at: Point, desk: Desk) -> bool:
-    """Return whether the dot under the pointer, or as good as, is a chosen one."""
-    row = desk.document.nearest(*at, desk.mm(_NEAR_PX))
-    if row is None:
-        return False
-    return bool((desk.selection.ids == desk.document.dots.id[row]).any())
+    def overlay(self, sight: Sight) -> Overlay:
+        """Return the outline of the chosen dots, with handles."""
+        return NOTHING if sight.is_held else selection_grips.overlay(sight)
 
 
 @dataclass(slots=True)
@@ -156,36 +162,3 @@ def _choose(desk: Desk, points: list[Point], mods: Mods) -> None:
     from stippler.brushes.selection import in_outline
 
     desk.selection.choose(in_outline(desk.document, points), mods)
-
-
-@dataclass(slots=True)
-class Carrying:
-    """The chosen dots follow the pointer."""
-
-    at: Point
-    overlay: Overlay = NOTHING
-
-    def take(self, event: Event, desk: Desk) -> ToolState:
-        """Move them by each step of the pointer."""
-        from stippler.brushes.selection import move
-
-        match event:
-            case Moved() | Released():
-                to = desk.at(event)
-                move(desk.document, desk.selection.ids, (to[0] - self.at[0], to[1] - self.at[1]))
-                self.at = to
-                if isinstance(event, Released) and event.button == LEFT:
-                    desk.document.commit()
-                    return RESTING
-            case KeyDown(key="escape"):
-                self.cancel(desk)
-                return RESTING
-            case FocusLost():
-                desk.document.commit()
-                return RESTING
-        return self
-
-    def cancel(self, desk: Desk) -> None:
-        """Put them back."""
-        if desk.document.in_stroke:
-            desk.document.cancel()

@@ -68,6 +68,31 @@ class Desk:
 
 
 @dataclass(frozen=True, slots=True)
+class Sight:
+    """What there is to be seen while nothing happens.
+
+    Attributes
+    ----------
+    document : Document or None
+    at_mm : (x, y) or None
+        The pointer on the page; None while it is elsewhere.
+    mm : float
+        How long a pixel is on the page.
+    mods : Mods
+        The modifier keys that are held.
+    is_held : bool
+        Whether the tool's state holds something; its overlay is shown besides.
+    """
+
+    document: Document | None
+    selection: Selection
+    at_mm: Point | None
+    mm: float
+    mods: Mods = NO_MODS
+    is_held: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Path:
     """A line to be drawn over the page, light and dark, so that it shows on ink and on paper."""
 
@@ -204,8 +229,8 @@ class Tool:
         """
         return None
 
-    def overlay(self, at_mm: Point | None, mods: Mods) -> Overlay:
-        """Return what lies over the page; `at_mm` is the pointer, None while it is elsewhere."""
+    def overlay(self, sight: Sight) -> Overlay:
+        """Return what lies over the page."""
         return NOTHING
 
     def preview(

@@ -26,7 +26,7 @@ from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
-from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Tool, ToolState
+from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Sight, Tool, ToolState
 from stippler.errors import StipplerError
 from stippler.settings import read_document, write_document
 
@@ -157,11 +157,14 @@ class Toolbox:
         """Whether what is held goes on while the pointer rests."""
         return bool(getattr(self.state, "is_timed", False))
 
-    def overlay(self, at_mm: Point | None) -> Overlay:
+    def overlay(self, document: Document | None, at_mm: Point | None, px_per_mm: float) -> Overlay:
         """Return what lies over the page: the tool's own, and what it holds."""
         if self.tool is None:
             return self.state.overlay
-        own, held = self.tool.overlay(at_mm, self.mods), self.state.overlay
+        sight = Sight(
+            document, self.selection, at_mm, 1.0 / px_per_mm, self.mods, is_held=self.is_busy
+        )
+        own, held = self.tool.overlay(sight), self.state.overlay
         return Overlay(own.paths + held.paths, own.handles + held.handles, held.tip or own.tip)
 
     def take(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import tempfile
 from collections.abc import Iterable
 from functools import cache
 from importlib import metadata
@@ -13,13 +14,29 @@ from pathlib import Path
 from platformdirs import user_cache_path
 
 _KERNELS = Path(__file__).parent.parent
-_IMPORT = re.compile(r"^from stippler\.kernels\.([\w.]+) import", re.MULTILINE)
+_PLUMBING = {"cache", "export", "numba_cache", "numba_import", "pool", "processor", "store"}
+"""Rooms beside this one that no machine code depends on."""
+
+_IMPORT = re.compile(r"^ *from stippler\.kernels\.([\w.]+) import", re.MULTILINE)
 
 
 def cache_root() -> Path:
     """Return the folder above all compiled kernels; ``STIPPLER_CACHE_DIR`` moves it."""
     base = os.environ.get("STIPPLER_CACHE_DIR")
-    return Path(base) if base else user_cache_path("stippler")
+    return Path(base) if base else _usual_root()
+
+
+@cache
+def _usual_root() -> Path:
+    """Return the user's folder for caches, or one beside temporary files for a user without."""
+    usual = user_cache_path("stippler")
+    there = next(folder for folder in (usual, *usual.parents) if folder.exists())
+    if os.access(there, os.W_OK) or not hasattr(os, "getuid"):
+        return usual
+    shared = Path(tempfile.gettempdir()) / f"stippler-{os.getuid()}"
+    if shared.exists() and shared.stat().st_uid != os.getuid():  # another user's trap
+        return shared.with_name(f"{shared.name}-{os.getpid()}")
+    return shared
 
 
 def module_folder(source: str) -> Path:
@@ -32,9 +49,27 @@ def module_folder(source: str) -> Path:
     return cache_root() / f"{path.stem}-{_digest(_with_imports(path))}"
 
 
+def source_digest(source: str) -> str:
+    """Return a digest of what the kernels of one source file are made of, wherever it lies."""
+    return _content_digest(tuple(sorted(_with_imports(Path(source)))))
+
+
+def all_sources_digest() -> str:
+    """Return a digest of what all kernels are made of."""
+    return _content_digest(tuple(sorted(_KERNELS.rglob("*.py"))))
+
+
 def all_digest() -> str:
-    """Return a digest of all kernel sources."""
+    """Return a digest of all kernel sources, as numba looks at them: with where and when."""
     return _digest(_KERNELS.rglob("*.py"))
+
+
+@cache
+def _content_digest(sources: tuple[Path, ...]) -> str:
+    digest = hashlib.sha256()
+    for source in sources:
+        digest.update(f"{source.name} {_text(source)}".encode())
+    return digest.hexdigest()[:16]
 
 
 def _with_imports(path: Path) -> set[Path]:
@@ -42,6 +77,8 @@ def _with_imports(path: Path) -> set[Path]:
     found, todo = set(), [path]
     while todo:
         source = todo.pop()
+        if source.parent == _KERNELS / "machine" and source.stem in _PLUMBING:
+            continue
         if source not in found:
             found.add(source)
             for name in _IMPORT.findall(_text(source)):

@@ -16,9 +16,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from llvmlite import ir
-from numba.core import cgutils, types
-from numba.extending import intrinsic
+from stippler.kernels.machine.jit import Operation
 
 LANES = 16
 """Corners a cell may have here."""
@@ -28,17 +26,32 @@ FRONT, BUFFER = 3 * LANES, 4 * LANES
 SCAN = 8
 """Dots that `near_mask` tests at once; arrays need this many numbers of padding."""
 
-_F8, _I4, _I8 = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _FAST = ("contract",)
+
+ir: Any
+cgutils: Any
+types: Any
+_F8: Any
+_I4: Any
+_I8: Any
+
+
+def _import_llvm() -> None:
+    """Import what operations are written in: when numba compiles the first, and not before."""
+    global ir, cgutils, types, _F8, _I4, _I8
+    from llvmlite import ir
+    from numba.core import cgutils, types
+
+    _F8, _I4, _I8 = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 
 
 def _operation(generator: Callable[..., Any]) -> Any:
     """Make a kernels' function of one that returns a signature and a generator of LLVM code."""
-    return intrinsic(generator)
+    return Operation(generator, _import_llvm)
 
 
 def _literal_operation(generator: Callable[..., Any]) -> Any:
-    return intrinsic(prefer_literal=True)(generator)
+    return Operation(generator, _import_llvm, prefer_literal=True)
 
 
 def _splat(builder: Any, value: Any, lanes: int) -> Any:

@@ -14,7 +14,7 @@ from stippler.ui.widgets import Rect
 
 _DARK, _LIGHT = 0xFF201810, 0xE0FFFFFF  # ImGui's order: alpha, blue, green, red
 _CHOSEN = 0xFF785F2F
-_HANDLE, _DASH = 4.0, 5.0
+_HANDLE, _DASH = 5.0, 5.0
 _LEAST_PX = 3.0  # a tip smaller than this gets a cross
 
 
@@ -111,5 +111,5 @@ def _draw_dashes(draw: imgui.ImDrawList, points: list[tuple[float, float]]) -> N
                 draw.add_line(start, (x0 + b * (x1 - x0), y0 + b * (y1 - y0)), _DARK, 1.2)
             left -= to - at
             at = to
-            if left <= 0.0:
+            if left <= 1e-3:  # rounding would leave a rest that never ends
                 left, on = _DASH, not on

@@ -24,7 +24,18 @@ class Panels:
         self._parts, self._closed = parts, closed
         self._to_show = ""
         self._in_front: set[str] = set()
+        self._turns_focus = False
+        self.are_hidden = False
         self._home = 0  # where the first panel is docked
+
+    def turn_hidden(self) -> None:
+        """Hide all panels, or show those again that were there."""
+        self.are_hidden = not self.are_hidden
+        self._in_front.clear()
+
+    def turn_focus(self) -> None:
+        """Give the panel in front the keyboard in the next frame, or take it back to the canvas."""
+        self._turns_focus = True
 
     @property
     def names(self) -> list[str]:
@@ -39,7 +50,7 @@ class Panels:
         """Open a panel, and bring it to the front."""
         if name in self._closed:
             self._closed.remove(name)
-        self._to_show = name
+        self._to_show, self.are_hidden = name, False
 
     def is_in_front(self, name: str) -> bool:
         """Return whether a panel's controls were drawn in the last frame."""
@@ -55,15 +66,28 @@ class Panels:
     def show_all(self) -> None:
         """Open every panel."""
         self._closed.clear()
+        self.are_hidden = False
 
     def draw(self, guarded: Guarded) -> None:
         """Draw the panels that are shown; a faulty one leaves the others alone."""
         for name, draw in self._parts.items():
-            if self.is_open(name):
+            if self.is_open(name) and not self.are_hidden:
                 guarded(f"the panel {name}", lambda name=name, draw=draw: self._draw(name, draw))  # type: ignore[misc]
         if self._to_show:
             imgui.set_window_focus(self._to_show)
             self._to_show = ""
+        if self._turns_focus:
+            self._turns_focus = False
+            self._turn_focus()
+
+    def _turn_focus(self) -> None:
+        context = imgui.get_current_context()
+        assert context is not None
+        if context.nav_cursor_visible and context.nav_window is not None:
+            imgui.set_nav_cursor_visible(False)
+        elif front := next((name for name in self._parts if name in self._in_front), ""):
+            imgui.set_window_focus(front)
+            imgui.set_nav_cursor_visible(True)
 
     def _draw(self, name: str, draw: Callable[[], None]) -> None:
         if self._home:  # a panel that has never had a place

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.editor.commands import Commands
+from stippler.editor.commands import Command, Commands
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.ui.icons import Pen, draw_icon
 from stippler.ui.theme import STATUS_HEIGHT, STRIP_WIDTH
@@ -34,20 +34,26 @@ def draw_tools(widgets: Widgets, toolbox: Toolbox, commands: Commands) -> None:
     imgui.begin("##tools", None, _FLAGS & ~imgui.WindowFlags_.no_scrollbar)
     imgui.pop_style_var(3)
     used = toolbox.name
-    _draw_tool(widgets, commands, "", "tool.none", used == "", "The pointer only looks around.")
+    tip = "The pointer only looks around."
+    if draw_tool(widgets, commands["tool.none"], "", tip, used=used == ""):
+        commands["tool.none"].run()
     for tool in toolbox.tools:
-        _draw_tool(widgets, commands, tool.name, f"tool.{tool.name}", used == tool.name, tool.tip)
+        command = commands[f"tool.{tool.name}"]
+        if draw_tool(widgets, command, tool.name, tool.tip, used=used == tool.name):
+            command.run()
     imgui.end()
     imgui.pop_style_var(2)
 
 
-def _draw_tool(
-    widgets: Widgets, commands: Commands, kind: str, name: str, used: bool, tip: str
-) -> None:
-    side, command = _BUTTON * widgets.scale, commands[name]
+def draw_tool(
+    widgets: Widgets, command: Command, name: str, tip: str, *, used: bool, mark: str = ""
+) -> bool:
+    """Draw the icon of a tool as a button; return whether it was pressed."""
+    side = _BUTTON * widgets.scale
     corner = imgui.get_cursor_screen_pos()
-    if imgui.invisible_button(f"##{name}", (side, side)):
-        command.run()
+    pressed = imgui.invisible_button(
+        f"##{command.name}", (side, side), imgui.ButtonFlags_.enable_nav
+    )
     draw, theme = imgui.get_window_draw_list(), widgets.theme
     if used or imgui.is_item_hovered():
         fill = theme.accent if used else theme.hovered
@@ -56,6 +62,7 @@ def _draw_tool(
     icon = _ICON * widgets.scale
     gap = (side - icon) / 2
     colour = widgets.packed(theme.on_accent if used else theme.text)
-    draw_icon(kind, command.label, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
-    widgets.note(command.label)
-    widgets.tip(f"{command.hint}\n{tip}")
+    draw_icon(name, command.label, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
+    widgets.note(f"{mark}{command.label}")
+    widgets.tip(f"{command.hint}\n{tip}", beside=not mark)
+    return pressed

@@ -9,12 +9,15 @@ from stippler.editor.events import KeyDown
 from stippler.editor.keymap import save_keys
 from stippler.editor.messages import WARNING
 from stippler.editor.session import Session
+from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
+from stippler.ui.popups.context import ContextPalette
 from stippler.ui.popups.file_dialogs import Dialogs
 from stippler.ui.popups.filing import Filing
 from stippler.ui.popups.new_page import NewPage
 from stippler.ui.popups.palette import Palette
 from stippler.ui.popups.preferences_window import PreferencesWindow
+from stippler.ui.popups.recovery import RecoveryWindow
 from stippler.ui.popups.shortcut_sheet import Sheet
 from stippler.ui.preferences import Preferences
 from stippler.ui.widgets import Widgets
@@ -27,15 +30,25 @@ class Popups:
     """All of them; `draw` is called in every frame."""
 
     def __init__(
-        self, window: Window, session: Session, kept: Preferences, *, use_native: bool
+        self,
+        window: Window,
+        session: Session,
+        kept: Preferences,
+        toolbox: Toolbox,
+        *,
+        use_native: bool,
     ) -> None:
         self._session, self._kept = session, kept
         self.dialogs = Dialogs(use_native=use_native)
         self.filing = Filing(session, self.dialogs, kept, window.end)
+        self.recovery = RecoveryWindow(
+            session.keeping.root, session, window.ctx, window.wake, self.filing.guard.then
+        )
         self.new_page = NewPage(self.filing.begin)
         self.palette = Palette(kept, self.filing.recent)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
+        self.context = ContextPalette(toolbox)
         self.commands: Commands | None = None
 
     @property
@@ -45,6 +58,7 @@ class Popups:
             self.dialogs.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
+            or self.recovery.is_open
             or self.palette.is_open
             or self.sheet.is_open
         )
@@ -65,7 +79,9 @@ class Popups:
         guarded("the preferences", lambda: self.preferences.draw(widgets, commands))
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
+        guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the question", lambda: self.filing.guard.draw(widgets))
+        guarded("the palette at the pointer", lambda: self.context.draw(widgets, commands))
         guarded("the palette", lambda: self.palette.draw(widgets, commands))
         guarded("the shortcuts", lambda: self.sheet.draw(widgets, commands))
 

@@ -85,7 +85,7 @@ class Window:
         try:
             width, height = (round(side * (self._given_ratio or 1.0)) for side in place.size)
             self._handle = self._open(title, (width, height), offscreen)
-            self._place = place
+            self._place = self._before = place
             put(self._handle, place)
             glfw.make_context_current(self._handle)
             glfw.swap_interval(0 if offscreen else 1)
@@ -235,7 +235,26 @@ class Window:
     @property
     def place(self) -> Place:
         """Where the window is, to be put there again."""
-        return place_of(self._handle, self._place)
+        return self._before if self.is_full_screen else place_of(self._handle, self._place)
+
+    @property
+    def is_full_screen(self) -> bool:
+        """Whether it covers a monitor."""
+        return bool(glfw.get_window_monitor(self._handle))
+
+    def turn_full_screen(self) -> None:
+        """Cover the monitor that it is on, or go back to where it was."""
+        if self.is_full_screen:
+            x, y = self._before.at or (80, 80)
+            windowed: Any = None
+            glfw.set_window_monitor(self._handle, windowed, x, y, *self._before.size, 0)
+            return
+        monitor = glfw.get_primary_monitor()
+        mode = glfw.get_video_mode(monitor) if monitor else None
+        if monitor and mode:
+            self._before = self.place
+            size = (mode.size.width, mode.size.height)
+            glfw.set_window_monitor(self._handle, monitor, 0, 0, *size, mode.refresh_rate)
 
     def restore(self) -> None:
         """Show a minimised window again."""
