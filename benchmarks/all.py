@@ -19,6 +19,7 @@ from stippler.kernels.machine.pool import n_threads
 TOPICS = (
     "programs",
     "relaxation",
+    "areas",
     "first_dots",
     "quality",
     "grain",
