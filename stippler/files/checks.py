@@ -86,9 +86,9 @@ class Findings:
 
     @property
     def n(self) -> int:
-        """How many faults there are, lost tone apart."""
-        every = (self.too_small, self.too_close, self.bleeding, self.off_page, self.cut)
-        return sum(map(len, every))
+        """How many faults there are, lost tone apart; a pair with two faults counts once."""
+        pairs = np.unique(np.concatenate([self.too_close, self.bleeding]), axis=0)
+        return sum(map(len, (self.too_small, pairs, self.off_page, self.cut)))
 
     def lines(self) -> list[str]:
         """Return a line for each kind of fault."""
