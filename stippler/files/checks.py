@@ -162,6 +162,10 @@ def _beside(drawing: Drawing) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     size = np.array([page.width_mm, page.height_mm])
     low, high = dots.position_mm - far, dots.position_mm + far
     off = np.asarray(((high <= 0) | (low >= size)).any(axis=1))
+    # at a corner the box may touch what the dot does not
+    away = np.clip(dots.position_mm, 0, size) - dots.position_mm
+    towards = _reach(dots, np.arange(len(dots)), np.arctan2(away[:, 1], away[:, 0]))
+    off |= (away != 0).all(axis=1) & (np.hypot(away[:, 0], away[:, 1]) >= towards)
     cut = np.asarray(((low < -1e-9) | (high > size + 1e-9)).any(axis=1))
     return off, cut
 

@@ -161,3 +161,11 @@ def test_values_no_sheet_measures():
         checks.gain_of([0.1, 0.2])
     with pytest.raises(ParameterError, match="7 shares"):
         checks.gain_of([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1.7])
+
+
+def test_a_dot_beside_a_corner_lies_beside_the_page():
+    """Its box touches the page, and its disc does not; found by Hypothesis."""
+    dots = Dots.round([(-0.4, -0.4), (40.3, 30.3)], 0.5)
+    found = check(drawing(dots), Process())
+    assert found.off_page.tolist() == [0]
+    assert found.cut.tolist() == [1]
