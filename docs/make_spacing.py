@@ -64,8 +64,9 @@ def main() -> None:
     before_after: list[list[Image.Image]] = []
     for spacing in ("lloyd", "even"):
         row = [middle(drawn(grey, dots=10_000, width=100, tone="perceptual", spacing=spacing))]
-        for name in SAMPLES:
-            row.append(middle(drawn(sample(name), dots=20_000, width=130, spacing=spacing)))
+        row += [
+            middle(drawn(sample(name), dots=20_000, width=130, spacing=spacing)) for name in SAMPLES
+        ]
         before_after.append(row)
     sheet(before_after).save(HERE / "rows.png", optimize=True)
     by_tone = [
