@@ -22,6 +22,7 @@ TOPICS = (
     "areas",
     "first_dots",
     "quality",
+    "grain",
     "tone",
     "rendering",
     "exports",
