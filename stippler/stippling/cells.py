@@ -13,7 +13,7 @@ from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_c
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.spacing import MASS, PER_AREA
+from stippler.kernels.cells.spacing import MASS, NEIGHBOUR
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
@@ -107,7 +107,7 @@ class Cells:
         count = np.bincount(self.compartment_of_dot, minlength=n_parts)
         unit = np.divide(count, mass, out=np.ones(n_parts), where=mass > 0)
         found[:, MASS] *= unit[self.compartment_of_dot]
-        found[:, PER_AREA] *= unit[self.compartment_of_dot]
+        found[:, NEIGHBOUR] /= np.sqrt(unit[self.compartment_of_dot])
         self.rules = self.rules._replace(unit=unit, wants=found, found=self.rules.wants)
 
     def set_rules(self, rules: Rules) -> None:
