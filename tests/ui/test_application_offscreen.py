@@ -221,7 +221,7 @@ def test_look_and_values_survive(start: Start) -> None:
     assert desk.app.editor.look.opacity == 0.8
     assert (desk.app.session.tone, desk.app.session.width_mm) == ("perceptual", 77.0)
     run_by_name(desk, "values as at first")
-    assert (desk.app.session.tone, desk.app.session.width_mm) == ("linear", 148.0)
+    assert (desk.app.session.tone, desk.app.session.width_mm) == ("illustration", 148.0)
 
 
 def test_text_and_panels_grow_at_once(start: Start) -> None:
