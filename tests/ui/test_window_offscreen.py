@@ -209,7 +209,7 @@ def test_export_asks_before_it_replaces_a_file(desk, picture: Path, tmp_path: Pa
     open_and_finish(desk, picture)
     out = tmp_path / "out.csv"
     out.write_text("precious")
-    desk.host.key("s", ctrl=True)
+    desk.host.key("e", ctrl=True)
     for verb, kept in (("Cancel", True), ("Replace", False)):  # Cancel goes back to the path
         desk.host.fill("path", str(out))
         assert desk.host.shown("Replace")
@@ -223,7 +223,7 @@ def test_export_asks_before_it_replaces_a_file(desk, picture: Path, tmp_path: Pa
 
 def test_a_png_is_exported_while_the_window_draws(desk, picture: Path, tmp_path: Path) -> None:
     open_and_finish(desk, picture)
-    desk.host.key("s", ctrl=True)
+    desk.host.key("e", ctrl=True)
     desk.host.fill("path", str(tmp_path / "out.png"))
     desk.host.until(lambda: not desk.app.session.exporting, "the export")
     assert str(tmp_path / "out.png") in desk.host.said()
@@ -240,7 +240,7 @@ def test_a_png_is_exported_while_the_window_draws(desk, picture: Path, tmp_path:
 
 def test_an_unknown_ending_is_one_line(desk, picture: Path, tmp_path: Path) -> None:
     open_and_finish(desk, picture)
-    desk.host.key("s", ctrl=True)
+    desk.host.key("e", ctrl=True)
     desk.host.fill("path", str(tmp_path / "out.doc"))
     dialogs = desk.app.editor.popups.dialogs
     assert ".doc is no ending" in dialogs._own.problem
