@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Key
+from stippler.editor.print_check import PrintCheck
 from stippler.stippling.plan import Plan
 from stippler.ui.actions.parts import Parts
 from stippler.ui.preferences import TONES
@@ -81,6 +82,19 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),),
                   can=lambda: session.paintable and session.n_dots > 0)  # fmt: skip
     yield Command("work.reset", "Values as at first", reset)
+    yield from _print_commands(parts)
+
+
+def _print_commands(parts: Parts) -> Iterator[Command]:
+    session = parts.session
+    check = PrintCheck(session, parts.painting, parts.view)
+
+    def has_dots() -> bool:
+        return session.paintable and session.n_dots > 0
+
+    yield Command("work.check_print", "Next fault that print would spoil", check.show_next,
+                  can=has_dots)  # fmt: skip
+    yield Command("work.repair_print", "Repair for print", check.repair, can=has_dots)
 
 
 def help_commands(parts: Parts) -> Iterator[Command]:
