@@ -23,6 +23,7 @@ TOPICS = (
     "quality",
     "tone",
     "rendering",
+    "exports",
     "editor",
     "brushes",
     "view",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.exceptions import TyperException
 
+from stippler.cli_check import calibrate, check
 from stippler.cli_options import export_names, with_export_options
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.machine.numba_import import skip_blas
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 _INTERRUPTED = 130
-COMMANDS = ("edit", "render", "stats", "bench", "info")
+COMMANDS = ("edit", "render", "stats", "check", "calibrate", "bench", "info")
 
 app = typer.Typer(
     add_completion=False,
@@ -329,6 +330,10 @@ def stats(
             for note in notes:
                 _note(file, note)
     typer.echo(statistics.as_json(report) if as_json else statistics.as_text(report))
+
+
+app.command()(check)
+app.command()(calibrate)
 
 
 @app.command()

@@ -318,3 +318,22 @@ def test_help_imports_nothing_heavy():
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=WAIT_S, check=True
     )
     assert result.stderr.strip() == "[]"
+
+
+def test_check_counts_and_repairs(tmp_path):
+    table, out = tmp_path / "dots.csv", tmp_path / "mended.svg"
+    table.write_text("x_mm,y_mm,radius_mm\n5,5,0.5\n6.02,5,0.5\n20,20,0.5\n12,12,0.02\n")
+    result = run("check", table, "--least-gap", 0.1, "-o", out)
+    assert result.returncode == 0, result.stderr
+    assert "1 dots are smaller" in result.stdout
+    assert "1 gaps between dots are narrower" in result.stdout
+    assert "repaired; left: nothing" in result.stdout
+    assert out.read_text().count("<circle") == 3
+
+
+def test_calibrate_tells_the_gain(tmp_path):
+    assert run("calibrate", "-o", tmp_path / "sheet.pdf").returncode == 0
+    result = run("calibrate", "--measured", ".1,.2,.3,.4,.5,.6,.7")
+    assert result.stdout.startswith("--gain ")
+    assert abs(float(result.stdout.split()[1])) < 0.002
+    assert_one_line(run("calibrate", "--measured", "1,2"), 2, "7 shares")

@@ -61,6 +61,8 @@ class Kind:
         The type that does the opposite; what both have is the same.
     opposite : (str, mapping) or None
         A parameter, and for values of it those that do the opposite.
+    nothing : str
+        Said where a stroke has changed nothing; with the brush's values in braces.
     """
 
     name: str
@@ -73,6 +75,7 @@ class Kind:
     most_ticks: int = 0
     inverse: str = ""
     opposite: tuple[str, Mapping[str, str]] | None = None
+    nothing: str = ""
 
     @property
     def has_tip(self) -> bool:
@@ -123,6 +126,7 @@ KINDS: tuple[Kind, ...] = (
             ),
         ),
         inverse="thin",
+        nothing="no room for more dots: they keep {apart_mm:g} mm from all others; lower Distance",
     ),
     Kind(
         "remove",

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely.geometry import box
 
 from stippler.brushes.brush import Brush
 from stippler.brushes.kinds import KINDS
@@ -15,6 +16,7 @@ from stippler.brushes.tip import Tip
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.partition import Partition
 from stippler.drawing.reference import Reference
 from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.tone.union_share import shares_of_union
@@ -39,6 +41,7 @@ def warm_up_brushes() -> None:
     Tip("polygon", corners=((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))).weight(
         document.dots.position_mm, 9.0
     )
+    Partition({0: box(0, 0, 9, 9), 1: box(1, 1, 2, 2)}).area_at(document.dots.position_mm)
     document.merge(_as_result(document.begin_run("relax")))
     document.end_run()
     while document.undo():

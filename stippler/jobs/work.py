@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
+    from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.stippling.fill import Filling
@@ -119,41 +120,68 @@ def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
 def relax_drawing(
     drawing: Drawing, iterations: int, *, weighted: bool, spacing: str = "even"
 ) -> Iterator[Work]:
-    """Relax the free dots of a drawing that nobody else changes, each within its area.
+    """Relax the free dots of a drawing that nobody else changes, each within what its area owns.
 
-    Spaced evenly by the tone they keep it: see `stippler.stippling.relax_all`.
+    Spaced evenly by the tone they keep it: see `stippler.stippling.relax_all`. Dots that lie in
+    another area's part stay where they are.
     """
     yield Work("relax", 0, iterations)
+    import numpy as np
+
+    from stippler.drawing.partition import Partition
+
+    dots, partition = drawing.dots, Partition(drawing.outlines())
+    own = np.flatnonzero(partition.area_at(dots.position_mm) == dots.area)
+    mine = dots if len(own) == len(dots) else dots.take(own)
+    used, shape_of_dot = np.unique(mine.area, return_inverse=True)
+    parts = [partition.part_of(int(k)) for k in used]
+    run = _relaxed(mine, parts, shape_of_dot, drawing.reference, iterations, weighted, spacing)
+    for k, (moved, sizes) in enumerate(run):
+        if mine is not dots:
+            moved, sizes = _among(dots.position_mm, own, moved), _among(dots.radius_mm, own, sizes)
+        yield Work("relax", min(k + 1, iterations), iterations, moved_mm=moved, radius_mm=sizes)
+
+
+def _relaxed(
+    dots: Dots,
+    parts: list[Polygon | MultiPolygon],
+    shape_of_dot: NDArray[np.intp],
+    reference: Reference | None,
+    iterations: int,
+    weighted: bool,
+    spacing: str,
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float32] | None]]:
+    """Yield positions after each step, and radii where they change."""
+    if spacing == "even" and (weighted or reference is None):
+        from stippler.stippling.relax_all import relaxed_all
+
+        yield from relaxed_all(
+            dots.position_mm, dots.radius_mm, parts, dots.fixed, shape_of_dot, reference, iterations
+        )
+        return
     import numpy as np
 
     from stippler.stippling.density import DensityField
     from stippler.stippling.relax import Relaxation
 
-    dots, reference = drawing.dots, drawing.reference
-    used, shape_of_dot = np.unique(dots.area, return_inverse=True)
-    outlines = [drawing.areas[int(k)].outline_mm for k in used]
-    if spacing == "even" and (weighted or reference is None):
-        from stippler.stippling.relax_all import relaxed_all
-
-        run = relaxed_all(
-            dots.position_mm, dots.radius_mm, outlines, dots.fixed, shape_of_dot, reference,
-            iterations,
-        )  # fmt: skip
-        for k, (moved, sizes) in enumerate(run):
-            done = min(k + 1, iterations)
-            yield Work("relax", done, iterations, moved_mm=moved, radius_mm=sizes)
-        return
     density = None
     if weighted and reference is not None:
         # dots settle at the root of their weight
         density = DensityField(np.square(reference.darkness), reference.pixel_mm)
-    engine = Relaxation(
-        dots.position_mm, outlines, dots.fixed, shape_of_dot, density,
-        method="lloyd" if spacing == "even" else spacing,
-    )  # fmt: skip
-    for k in range(iterations):
+    method = "lloyd" if spacing == "even" else spacing
+    engine = Relaxation(dots.position_mm, parts, dots.fixed, shape_of_dot, density, method=method)
+    for _ in range(iterations):
         engine.step()
-        yield Work("relax", k + 1, iterations, moved_mm=engine.points)
+        yield engine.points, None
+
+
+def _among(all_: NDArray[Any], rows: NDArray[np.intp], new: NDArray[Any] | None) -> Any:
+    """Return values with those of some rows renewed; None where there are none."""
+    if new is None:
+        return None
+    out = all_.copy()
+    out[rows] = new
+    return out
 
 
 def carry_on(

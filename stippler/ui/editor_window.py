@@ -61,6 +61,7 @@ _LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
+_KEEP_EVERY_S = 5.0  # preferences are looked at no more often than this
 _REST_FRAMES = 2  # of the panels, until what one part of a batch has opened is there for the next
 
 
@@ -118,7 +119,9 @@ class Editor:
         self._schedule, self._rate = Schedule(), FrameRate()
         self._ratio = 1.0
         self._preview: Preview | None = None
-        self._last_s = clock()
+        self._last_s = self._kept_s = clock()
+        self._may_have_changed = False  # since preferences were last looked at
+        self._keep_failure = ""
         self._size_px = window.size_px
 
     def _parts(self) -> Parts:
@@ -157,6 +160,7 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
+            self._may_have_changed = True
         if self.session.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
@@ -222,7 +226,11 @@ class Editor:
         self.gui.dress(self.look)
         fed = [(event, self.gui.feed(event)) for event in events]
         self.widgets = Widgets(
-            self.look.theme, self.gui.fonts, self.gui.scale, self.gui.escape_level
+            self.look.theme,
+            self.gui.fonts,
+            self.gui.scale,
+            self.gui.escape_level,
+            lambda text: self.session.messages.say(text, WARNING),
         )
         failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
         if failure is not None:
@@ -367,8 +375,8 @@ class Editor:
         for problem in filter(None, problems):
             self.session.messages.say(problem, WARNING)
 
-    def _keep(self) -> None:
-        """Write the preferences, if they have changed."""
+    def _keep(self, *, again: bool = True) -> None:
+        """Write the preferences, if they have changed; `again` repeats what has failed before."""
         kept = self._kept
         kept.note_values(self.session)
         kept.place = self._window.place
@@ -376,7 +384,9 @@ class Editor:
         try:
             kept.keep()
         except StipplerError as error:
-            self.session.messages.say(str(error), WARNING)
+            if again or str(error) != self._keep_failure:
+                self.session.messages.say(str(error), WARNING)
+            self._keep_failure = str(error)
 
     # --- what may go wrong, and what comes later ----------------------------------------------
 
@@ -395,6 +405,18 @@ class Editor:
         text = f"{where} failed ({type(error).__name__}: {what}); the drawing is safe"
         self.session.messages.say(text, ERROR, error)
 
+    def _keep_soon(self, now_s: float) -> None:
+        """Write brushes and preferences that have changed some seconds ago."""
+        if (at_s := self.painting.toolbox.save_soon(now_s)) is not None:
+            self._schedule.wake_at(at_s)
+        if not self._may_have_changed:
+            return
+        if now_s - self._kept_s > _KEEP_EVERY_S:
+            self._kept_s, self._may_have_changed = now_s, False
+            self._keep(again=False)
+        else:
+            self._schedule.wake_at(self._kept_s + _KEEP_EVERY_S + 0.01)
+
     def _plan_wakes(self) -> None:
         now = self._clock()
         message = self.session.messages
@@ -402,5 +424,6 @@ class Editor:
             self._schedule.wake_at(now + message.left_s + 0.01)
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
+        self._keep_soon(now)
         if self.popups.dialogs.waiting:
             self._schedule.wake_at(now + _ANSWER_S)

@@ -6,17 +6,23 @@ find it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
 
+from stippler.editor.numbers import parse_number
+from stippler.errors import ParameterError
 from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
 
 Rect = tuple[float, float, float, float]
 LABEL_WIDTH = 84.0
 _MARK_ALL = imgui.InputTextFlags_.auto_select_all
 _EXPLAINED = imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
+
+
+def _nothing(_: str) -> None:
+    pass
 
 
 @dataclass(slots=True)
@@ -27,6 +33,8 @@ class Widgets:
     ----------
     escape_level : int
         How many popups were open when Esc was pressed in this frame; 0 if it was not.
+    refuse : callable
+        Tells the person why what was typed is not taken.
     marks : dict
         Label to (x0, y0, x1, y1), in ImGui's coordinates, of what was drawn this frame.
     rooms : dict
@@ -37,6 +45,7 @@ class Widgets:
     fonts: Fonts
     scale: float
     escape_level: int = 0
+    refuse: Callable[[str], None] = _nothing
     marks: dict[str, Rect] = field(default_factory=dict)
     rooms: dict[str, Rect] = field(default_factory=dict)
 
@@ -211,27 +220,32 @@ class Widgets:
 
     def number(self, label: str, value: int, tip: str, *, spare: float = 0.0) -> int:
         """Take a whole number; it counts when Enter is pressed or the field is left."""
-        self.label(label)
-        if spare:
-            imgui.set_next_item_width(-spare)
-        _, typed = imgui.input_int(f"##{label}", value, 0, 0, _MARK_ALL)
-        done = imgui.is_item_deactivated_after_edit()
-        self.note(label)
-        self.tip(tip)
-        return typed if done else value
+        typed = self._typed(label, f"{value}", "", tip, spare)
+        return value if typed is None else round(typed)
 
     def length(
         self, label: str, value: float, tip: str, unit: str = "mm", *, spare: float = 0.0
     ) -> float:
         """Take a number with a unit; it counts when Enter is pressed or the field is left."""
+        typed = self._typed(label, f"{value:.4g} {unit}", unit, tip, spare)
+        return value if typed is None else typed
+
+    def _typed(self, label: str, shown: str, unit: str, tip: str, spare: float) -> float | None:
+        """Draw a field for a number; return what was typed, None while nothing was."""
         self.label(label)
         if spare:
             imgui.set_next_item_width(-spare)
-        _, typed = imgui.input_float(f"##{label}", value, 0.0, 0.0, f"%.4g {unit}", _MARK_ALL)
+        _, text = imgui.input_text(f"##{label}", shown, _MARK_ALL)
         done = imgui.is_item_deactivated_after_edit()
         self.note(label)
         self.tip(tip)
-        return typed if done else value
+        if not done or text == shown:
+            return None
+        try:
+            return parse_number(text, unit)
+        except ParameterError as error:
+            self.refuse(f"{label}: {error}")
+            return None
 
     def share(self, label: str, value: float, tip: str) -> float:
         """Take a share of 0..1, shown in percent, by dragging in the rest of the line."""

@@ -294,6 +294,15 @@ def test_pressure_comes_from_a_key_or_from_speed(hands):
     hands.key("escape")
 
 
+def test_spray_says_why_it_adds_nothing(hands):
+    hands.use("spray", values={"per_s": 300.0, "apart_mm": 5.0})
+    hands.drag((20, 15), (20, 15))
+    assert not hands.labels
+    ((level, text),) = hands.said
+    assert "5 mm" in text
+    assert level == "warning"
+
+
 class ToolMachine(RuleBasedStateMachine):
     """Any events in any order, with late results in their midst."""
 

@@ -20,6 +20,7 @@ from stippler.editor.events import (
     Released,
     Scrolled,
 )
+from stippler.editor.messages import WARNING
 from stippler.editor.tools.brush_shelf import BrushShelf
 from stippler.editor.tools.tool import (
     NOTHING,
@@ -200,17 +201,22 @@ class Stroking:
             case Moved():
                 self.stroke.follow(self._sample(event, desk))
             case Released(button=button) if button == LEFT:
-                return self._ended(self._sample(event, desk))
+                return self._ended(self._sample(event, desk), desk)
             case FocusLost():
-                return self._ended(self.stroke.end)
+                return self._ended(self.stroke.end, desk)
             case KeyDown(key="escape"):
                 self.stroke.cancel()
                 return RESTING
         return self
 
-    def _ended(self, sample: PointerSample) -> ToolState:
-        self.stroke.commit(sample)
+    def _ended(self, sample: PointerSample, desk: Desk) -> ToolState:
+        edit = self.stroke.commit(sample)
         self.tool.last_end = sample
+        brush = self.tool.in_hand(desk.mods)
+        about = brush.about
+        if edit.is_empty and about.nothing:
+            values = {p.name: brush.value(p.name) for p in about.parameters}
+            desk.say(about.nothing.format(**values), WARNING)
         return RESTING
 
     @property

@@ -61,7 +61,7 @@ def text_lines(
     x = at_mm[0] - align * width_mm(text, capital_mm)
     lines = []
     for (width, strokes), over in zip(glyphs, marks, strict=True):
-        for stroke in (*strokes, *_placed(over, width, strokes)):
+        for stroke in filter(None, (*strokes, *_placed(over, width, strokes))):
             points = np.array(stroke, np.float64).reshape(-1, 2) * scale
             lines.append(Line(points + np.array([x, at_mm[1]]), pen))
         x += width * scale
@@ -109,7 +109,7 @@ def _glyphs(text: str) -> tuple[list[_Glyph], list[str]]:
 def _placed(marks: str, width: float, strokes: list[list[float]]) -> list[list[float]]:
     if not marks:
         return []
-    heights: NDArray[np.float64] = np.concatenate([np.array(stroke[1::2]) for stroke in strokes])
+    heights: NDArray[np.float64] = np.concatenate([np.array(s[1::2]) for s in strokes])
     top, placed = float(heights.min()), []
     for mark in marks:
         shapes, foot = (_MARKS[mark], top) if mark in _MARKS else (_BELOW[mark], 0.0)

@@ -27,7 +27,7 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
     yield from _structure(file, sheet, layers)
     head = f"<< /Length {_LENGTH} 0 R /Filter /FlateDecode >>\nstream\n".encode()
     yield file.begin(_CONTENT) + file.put(head)
-    deflate, n_packed = zlib.compressobj(6), 0
+    deflate, n_packed = zlib.compressobj(4), 0
     for part in _content(sheet, layers):
         if packed := deflate.compress(part):
             n_packed += len(packed)

@@ -77,6 +77,9 @@ class Paths:
 
 def paths_of(layer: Layer, sheet: Sheet, pen_mm: float, *, sort: bool = True) -> Paths:
     """Return what a pen of a width does for a layer of a sheet."""
+    if _is_all_taps(layer, pen_mm):
+        points = layer.dots.position_mm
+        return Paths(points[tour(points)] if sort else points, np.arange(len(points) + 1))
     parts = list(_dots(layer.dots, pen_mm)) if not layer.inverse else []
     if layer.inverse or layer.shapes:
         parts += _hatched(layer, sheet, pen_mm)
@@ -87,6 +90,13 @@ def paths_of(layer: Layer, sheet: Sheet, pen_mm: float, *, sort: bool = True) ->
     if not parts:
         return Paths(np.empty((0, 2)), np.zeros(1, np.int64))
     return Paths(np.concatenate(parts), np.cumsum([0, *map(len, parts)]))
+
+
+def _is_all_taps(layer: Layer, pen_mm: float) -> bool:
+    if layer.inverse or layer.lines or layer.shapes:
+        return False
+    long = layer.dots.radius_mm * np.sqrt(layer.dots.elongation)
+    return bool((long <= TAP_UP_TO * pen_mm / 2).all())
 
 
 def _dots(dots: Dots, pen_mm: float) -> Iterator[Points]:

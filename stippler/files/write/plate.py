@@ -16,7 +16,7 @@ from stippler.files.write.lettering import text_lines, width_mm, wrapped
 from stippler.files.write.sheet import Layer, Line, Sheet, moved, sheet_of
 from stippler.stippling.tour import tour
 
-LINE_EFFORT = 1.0
+LINE_EFFORT = 0.6
 
 _MARK_MM, _CLEAR_MM, _HAIR_MM = 5.0, 3.0, 0.1
 _MARGIN_MM = 12.0  # around a sheet with marks

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.line import Line as DrawnLine
 
 if TYPE_CHECKING:
     from shapely.geometry import MultiPolygon, Polygon
@@ -133,8 +134,8 @@ def sheet_of(drawing: Drawing) -> Sheet:
 def layers_of(drawing: Drawing) -> Iterator[Layer]:
     """Yield a layer for each area that has something to show; the one place that reads areas.
 
-    Hidden areas are left out. Dots of an area that the drawing does not list come last, in a layer
-    of their own.
+    Hidden areas are left out. Dots of an area that the drawing does not list have a layer of their
+    own. Printed lines come last.
     """
     dots = drawing.dots
     listed = np.zeros(len(dots), np.bool_)
@@ -145,6 +146,20 @@ def layers_of(drawing: Drawing) -> Iterator[Layer]:
             yield Layer(area.name, _taken(dots, rows))
     if not listed.all():
         yield Layer("no area", _taken(dots, np.flatnonzero(~listed)))
+    every: list[Any] = [line for _, line in sorted(drawing.lines.items())]
+    printed = [line for line in every if line.printed]
+    even = [line for line in printed if line.width_mm[0] == line.width_mm[1] > 0]
+    tapered = [line for line in printed if line.width_mm[0] != line.width_mm[1]]
+    if even or tapered:
+        lines = tuple(_line(one) for one in even)
+        yield Layer("lines", lines=lines, shapes=tuple(shape_of(one.outline()) for one in tapered))
+
+
+def _line(one: DrawnLine) -> Line:
+    points = one.path.points_mm
+    if one.is_closed and len(points) > 1 and (points[0] == points[-1]).all():
+        points = points[:-1]
+    return Line(points, one.width_mm[0], one.is_closed)
 
 
 def _taken(dots: Dots, rows: NDArray[np.intp]) -> Dots:

@@ -122,7 +122,7 @@ def test_rounding_does_not_add_up():
 )
 def test_numbers_are_written_in_the_fewest_characters(value, decimals):
     out = np.zeros(40, np.uint8)
-    end = svg_text.put_number(out, 3, value, decimals)
+    end = svg_text.put_number.dispatcher(out, 3, value, decimals)
     text = out[3:end].tobytes().decode()
     assert math.isclose(float(text), value / 10**decimals, rel_tol=1e-15)
     assert not out[:3].any()
