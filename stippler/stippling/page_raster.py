@@ -32,6 +32,7 @@ _INKED_EDGE = 0.1  # mean darkness from which on the picture runs to the page's 
 _LEVELS = 65_535
 _DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
 _MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
+_FARTHEST = 2.0  # radii beyond the edge from which a dot is drawn back to it, at most
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
 
 
@@ -100,8 +101,10 @@ class PageRaster:
 
     def density(self) -> NDArray[np.float32]:
         """Dots per square pixel, bleed included; white stays exactly 0."""
-        table = self.rule.density(np.linspace(0.0, 1.0, _LEVELS + 1)).astype(np.float32)
-        level = np.ceil(self.darkness * np.float32(_LEVELS)).astype(np.uint16)
+        darkest = float(self.darkness.max()) or 1.0
+        table = self.rule.density(np.linspace(0.0, darkest, _LEVELS + 1)).astype(np.float32)
+        level = np.ceil(self.darkness * np.float32(_LEVELS / darkest))
+        level = np.minimum(level, np.float32(_LEVELS)).astype(np.uint16)
         return self.with_bleed(table[level])
 
     def ink_field(self) -> DensityField:
@@ -140,12 +143,17 @@ class PageRaster:
         beyond = np.flatnonzero(out > 0.0)
         depth = out[beyond] / self.radii(at[beyond])
         rank = np.argsort(depth, kind="stable")
-        n_kept = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH))
+        n_kept, n_over = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH)), 0
         if n_wanted is not None:
             room = n_wanted - (len(points) - len(beyond))
-            n_kept = min(max(room, n_kept // 2), int(np.searchsorted(depth[rank], 1.2)))
+            n_over = max(-room, 0)
+            n_kept = min(max(room, 0), int(np.searchsorted(depth[rank], _FARTHEST)))
         drop = np.zeros(len(points), bool)
         drop[beyond[rank[n_kept:]]] = True
+        if n_over:  # those of the page alone are too many: leave out the ones nearest to its edge
+            inner = np.flatnonzero(out == 0.0)
+            inwards = np.minimum(points[inner], size - points[inner]).min(axis=1)
+            drop[inner[np.argsort(inwards, kind="stable")[:n_over]]] = True
         kept: NDArray[np.float64] = at[~drop]
         return kept
 
