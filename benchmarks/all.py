@@ -19,8 +19,10 @@ from stippler.kernels.machine.pool import n_threads
 TOPICS = (
     "programs",
     "relaxation",
+    "areas",
     "first_dots",
     "quality",
+    "grain",
     "tone",
     "rendering",
     "exports",

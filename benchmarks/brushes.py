@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import statistics
 import time
+from functools import partial
 
 import numpy as np
+import shapely
 
 from benchmarks.figures import Figure, median_s
 from stippler.brushes.brush import Brush
@@ -17,6 +19,7 @@ from stippler.brushes.tip import Tip
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.partition import Partition
 from stippler.drawing.reference import Reference
 
 _SIDE_MM = 200.0
@@ -33,7 +36,7 @@ _VARIANTS: dict[str, list[dict[str, float | str | bool]]] = {
 def figures(quick: bool = False) -> list[Figure]:
     """Measure; `quick` uses fewer dots."""
     n = 50_000 if quick else 200_000
-    return [*_stamps(n), *_history(n), *_memory(n)]
+    return [*_stamps(n), *_history(n), *_memory(n), *_areas()]
 
 
 def _document(n: int) -> Document:
@@ -145,3 +148,27 @@ def _memory(n: int) -> list[Figure]:
             document.n_bytes / len(document.dots), "bytes", 200.0, 100.0,
         )
     ]  # fmt: skip
+
+
+def _areas() -> list[Figure]:
+    """Time what 200 areas on the page cost: finding the area of points, and short moves."""
+    rng = np.random.default_rng(1)
+    page = shapely.box(0, 0, _SIDE_MM, _SIDE_MM)
+    seeds = shapely.MultiPoint(rng.random((200, 2)) * _SIDE_MM)
+    cells = shapely.get_parts(shapely.voronoi_polygons(seeds, extend_to=page))
+    cells = [shapely.segmentize(shapely.intersection(cell, page), 2.0) for cell in cells]
+    outlines = {0: page, **{k + 1: cell for k, cell in enumerate(cells)}}
+    points = rng.random((100_000, 2)) * _SIDE_MM
+    many, one = Partition(outlines), Partition({0: page})
+    some, area = points[:220], many.area_at(points[:220])
+    found = [
+        Figure("finding the areas of 100k dots, 200 areas",
+               median_s(lambda: many.area_at(points), 9) * 1e3, "ms", 10.0),
+        Figure("preparing 200 areas of 6,600 edges",
+               median_s(lambda: Partition(outlines), 5) * 1e3, "ms", 100.0),
+    ]  # fmt: skip
+    for name, partition, own in (("1 area", one, np.zeros(220, np.int32)),
+                                 ("200 areas", many, area)):  # fmt: skip
+        ms = median_s(partial(partition.confine, some, some + 0.01, own), 99) * 1e3
+        found.append(Figure(f"keeping a stamp's 220 dots in their areas, {name}", ms, "ms", 0.2))
+    return found

@@ -50,7 +50,8 @@ def main() -> None:
     out = options.parse_args().out
     (out / "quality").mkdir(parents=True, exist_ok=True)
     pictures = (SPHERE, *(ROOT / "assets" / "samples" / name for name in SAMPLES))
-    parts = [_HEAD, _spectra(out / "quality")]
+    spacing = (ROOT / "docs" / "quality" / "spacing_section.md").read_text(encoding="utf-8")
+    parts = [_HEAD, spacing, _spectra(out / "quality")]
     parts += [_sample(path, out / "quality") for path in pictures]
     (out / "quality.md").write_text("\n".join(parts), encoding="utf-8")
 
@@ -98,7 +99,7 @@ even.
 
 def _draw(darkness: NDArray[np.float64], dots: int, **options: Any) -> Progress:
     reference = Reference(darkness.astype(np.float32), float(darkness.shape[1]))
-    *_, last = stages(reference, Plan(n_dots=dots, **options), snapshots=False)
+    *_, last = stages(reference, Plan(n_dots=dots, spacing="lloyd", **options), snapshots=False)
     return last
 
 

@@ -261,11 +261,32 @@ def fill(
     return fill_area(_polygon(area), n, arrangement, seed)
 
 
-def relax(points: ArrayLike, polygon: Any, *args: Any, **kwargs: Any) -> NDArray[np.float64]:
+def relax(
+    points: ArrayLike,
+    polygon: Any,
+    iterations: int = 20,
+    fixed: ArrayLike | None = None,
+    density: Any = None,
+    *,
+    method: str = "lloyd",
+    compartment_of_dot: ArrayLike | None = None,
+    tolerance_mm: float = 0.0,
+    over_relaxation: float = 1.0,
+) -> NDArray[np.float64]:
     """Move points to the centroids of their cells; see `stippler.stippling.relax.relax`."""
     from stippler.stippling.relax import relax as run
 
-    return run(points, polygon, *args, **kwargs)
+    return run(
+        points,
+        polygon,
+        iterations,
+        fixed,
+        density,
+        method=method,
+        compartment_of_dot=compartment_of_dot,
+        tolerance_mm=tolerance_mm,
+        over_relaxation=over_relaxation,
+    )
 
 
 def _polygon(area: Any) -> Polygon | MultiPolygon:

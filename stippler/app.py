@@ -43,6 +43,8 @@ class App:
         Without a display, for tests and screenshots.
     ratio : float
         Pixels a unit of an offscreen window, as dense screens of some systems have them.
+    recovery : Path, optional
+        The folder in which open drawings are kept for the case of a crash; else they are not.
     """
 
     def __init__(
@@ -55,6 +57,7 @@ class App:
         size: tuple[int, int] | None = None,
         offscreen: bool = False,
         ratio: float = 1.0,
+        recovery: Path | None = None,
     ) -> None:
         self._garbage = Garbage()
         kept = preferences or Preferences()
@@ -70,6 +73,8 @@ class App:
             width_mm=width_mm,
             stipple=partial(stipple_picture, is_warm=is_warm),
             make_ready=partial(make_ready, is_warm=is_warm),
+            is_warm=is_warm,
+            recovery=recovery,
         )
         native = False if offscreen else None
         self.editor = Editor(self.window, self.session, kept, native_dialogs=native)
@@ -81,6 +86,16 @@ class App:
             self._garbage.rest()
         self.window.wait(sleep_s if timeout_s is None else min(sleep_s, timeout_s))
         return self.editor.step()
+
+    def open(self, path: Path | None) -> None:
+        """Open a picture or a drawing, and offer what a crash has left."""
+        from stippler.opening import is_drawing  # late, for the sake of the first frame
+
+        if path is not None and is_drawing(path):
+            self.session.open_drawing(path)
+        elif path is not None:
+            self.session.open(path)
+        self.editor.popups.recovery.ask(quietly=True)
 
     def run(self) -> None:
         """Go on until the window is closed."""
@@ -99,7 +114,7 @@ class App:
 def edit(
     path: Path | None, plan: Plan, *, tone: str, width_mm: float, given: Collection[str] = ()
 ) -> int:
-    """Open the editor on a picture; return the exit code when its window is closed.
+    """Open the editor on a picture or a drawing; return the exit code when its window is closed.
 
     Parameters
     ----------
@@ -111,14 +126,16 @@ def edit(
     DisplayError
         If there is no display, or no OpenGL 3.3.
     """
+    from stippler.files.native.recovery import recovery_root
+
     kept = Preferences.load(settings_folder())
     plan, tone, width_mm = kept.begin(plan, tone, width_mm, given)
-    app = App(plan, tone=tone, width_mm=width_mm, preferences=kept)
+    app = App(plan, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root())
     try:
         app.step()  # a first frame before the worker takes its share of the processor
-        if path is not None:
-            app.session.open(path)
+        app.open(path)
         app.run()
+        app.session.keeping.close()  # not after an exception: then the drawing can be recovered
     finally:
         app.close()
     return 0

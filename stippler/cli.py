@@ -140,7 +140,9 @@ def _given(context: typer.Context) -> set[str]:
 @app.command()
 def edit(
     context: typer.Context,
-    file: Annotated[Path | None, typer.Argument(help="A picture; without one, a sample.")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(help="A picture or a drawing; without one, a sample.")
+    ] = None,
     dots: Dots = None,
     size_range: SizeRange = None,
     width: Width = DEFAULT_WIDTH_MM,
@@ -174,8 +176,10 @@ def edit(
     with at_hand(file or _sample()) as picture:
         if file is not None:
             from stippler.files.read.picture import check_picture
+            from stippler.opening import is_drawing
 
-            check_picture(picture)  # before a window opens
+            if not is_drawing(picture):
+                check_picture(picture)  # before a window opens
         from stippler.app import edit as open_editor
 
         raise typer.Exit(open_editor(picture, plan, tone=tone, width_mm=width, given=given))

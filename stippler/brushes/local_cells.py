@@ -140,7 +140,10 @@ def _part_of_area(document: Document, k: int, around: Box) -> tuple[list[shapely
         outline = outline.difference(shapely.unary_union(above))
     out = []
     for polygon in _polygons(outline):
-        parts = _polygons(shapely.clip_by_rect(polygon, *around))
+        part = shapely.clip_by_rect(polygon, *around)
+        if not part.is_valid:  # it does not know of holes that touch
+            part = shapely.intersection(polygon, window)
+        parts = _polygons(part)
         if len(parts) > 1:
             width = 0.1 * max(around[2] - around[0], around[3] - around[1])
             parts.append(window.buffer(width, join_style="mitre").difference(window))

@@ -34,8 +34,8 @@ class Drawing:
 
     Attributes
     ----------
-    areas, styles, lines, patterns : dict of id to value
-        The area of id 0 is the page itself.
+    areas, styles, lines, patterns, borders : dict of id to value
+        The area of id 0 is the page itself. Borders are what areas share, once areas were drawn.
     reference : Reference or None
         What tone is taken from.
     next_id : dict of kind to int
@@ -51,6 +51,7 @@ class Drawing:
     styles: dict[int, Style] = field(default_factory=_one_style)
     lines: dict[int, Record] = field(default_factory=dict)
     patterns: dict[int, Record] = field(default_factory=dict)
+    borders: dict[int, Record] = field(default_factory=dict)
     next_id: dict[str, int] = field(default_factory=dict)
     foreign: Foreign = field(default_factory=Foreign)
 
@@ -90,6 +91,7 @@ class Drawing:
             records.STYLE: self.styles,
             records.LINE: self.lines,
             records.PATTERN: self.patterns,
+            records.BORDER: self.borders,
         }
         return tables[kind]
 
@@ -122,5 +124,6 @@ class Drawing:
             styles=dict(self.styles),
             lines=dict(self.lines),
             patterns=dict(self.patterns),
+            borders=dict(self.borders),
             next_id=dict(self.next_id),
         )

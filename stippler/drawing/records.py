@@ -11,17 +11,21 @@ from dataclasses import fields
 from typing import Any, Protocol
 
 from stippler.drawing.area import Area
+from stippler.drawing.line import Line
 from stippler.drawing.page import Page
+from stippler.drawing.pattern import Pattern
+from stippler.drawing.planar.planar_map import Arc
 from stippler.drawing.reference import Picture, Reference
 from stippler.drawing.style import Style
 
-PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE = (
+PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE, BORDER = (
     "page",
     "reference",
     "area",
     "line",
     "pattern",
     "style",
+    "border",
 )
 SINGLE = (PAGE, REFERENCE)
 """Kinds of which a drawing holds one value, under the id 0; the page is always there."""
@@ -42,8 +46,11 @@ _READERS: dict[str, Callable[[Mapping[str, Any]], Record]] = {
     PAGE: Page.from_json,
     AREA: Area.from_json,
     STYLE: Style.from_json,
+    LINE: Line.from_json,
+    PATTERN: Pattern.from_json,
+    BORDER: Arc.from_json,
 }
-KINDS = (PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE)
+KINDS = (PAGE, REFERENCE, AREA, LINE, PATTERN, STYLE, BORDER)
 
 
 def fields_of(kind: str) -> frozenset[str]:
@@ -51,7 +58,7 @@ def fields_of(kind: str) -> frozenset[str]:
     if kind == REFERENCE:
         return frozenset(("picture", "width_mm", "adjustment"))
     reader: Any = _READERS.get(kind)
-    return frozenset(f.name for f in fields(reader.__self__)) if reader else frozenset()
+    return frozenset(f.name for f in fields(reader.__self__) if f.init) if reader else frozenset()
 
 
 def value_from_json(kind: str, data: Mapping[str, Any], pictures: Mapping[str, Picture]) -> Record:

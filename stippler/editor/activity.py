@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Protocol
 from stippler.editor.messages import WARNING, Messages
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from stippler.drawing.document import Document
     from stippler.drawing.drawing import Page
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
+    from stippler.files.native.recovery import Lost
     from stippler.jobs.work import Source, Work
     from stippler.stippling.stipple import Progress
 
@@ -28,6 +31,10 @@ class Desk(Protocol):
 
     def open_page(self, page: Page, source: Source | None, reference: Reference | None) -> None:
         """Begin another drawing."""
+        ...
+
+    def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
+        """Open a drawing that was kept."""
         ...
 
 
@@ -107,6 +114,34 @@ class Opening(Job):
         """Open the empty page; a picture that was not read leaves what was open."""
         if self.page is not None and outcome == "done":
             desk.open_page(self.page, None, None)
+
+
+@dataclass(slots=True)
+class Reopening(Job):
+    """A drawing is opened that was kept.
+
+    Attributes
+    ----------
+    file : Path or None
+        What it is saved in.
+    lost : Lost or None
+        What a crash has left of it.
+    """
+
+    file: Path | None = None
+    lost: Lost | None = None
+    _opened: Document | None = None
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Hold the drawing until everything is ready for it."""
+        self._note(work)
+        self._opened = work.document or self._opened
+        return self
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Open it; one that could not be read leaves what was open."""
+        if self._opened is not None and outcome == "done":
+            desk.open_document(self._opened, self.file, self.lost)
 
 
 @dataclass(slots=True)
@@ -200,7 +235,7 @@ class Filling(Job):
         """Leave it at that: dots come all at once."""
 
 
-Activity = Idle | Opening | Making | Relaxing | Filling
+Activity = Idle | Opening | Reopening | Making | Relaxing | Filling
 
 
 def _report(desk: Desk, n_dots: int, last: Progress | None) -> None:

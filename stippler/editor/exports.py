@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 _NEVER = object()
 
+SAVED = ".stipple"
+"""Ending of files that hold all of a drawing; others are exports."""
+
 
 class Exports:
     """The file being written, and the file that the open drawing was last written to.
@@ -28,7 +31,9 @@ class Exports:
     Attributes
     ----------
     path : Path or None
-        The file that the open drawing was last written to.
+        The file that the open drawing was last exported to.
+    file : Path or None
+        The file that it is saved in.
     n_written : int
         How many files have been written so far.
     """
@@ -54,11 +59,33 @@ class Exports:
         """End the writing at its next piece; what stood there before stays."""
         self._writing.given_up = True
 
-    def begin_drawing(self) -> None:
-        """Take note that another drawing is open."""
+    def begin_drawing(self, file: Path | None = None, saved: Document | None = None) -> None:
+        """Take note that another drawing is open.
+
+        Parameters
+        ----------
+        file : Path or None
+            What it is saved in.
+        saved : Document or None
+            The drawing, if the file holds it as it is.
+        """
         self.path: Path | None = None
+        self.file = file
+        self._seen = _seen(file)
         self._written_mark: object = _NEVER
         self._mark: object = _NEVER
+        self._is_copy = False
+        if file is not None and saved is not None:
+            self._written_mark = _mark(saved)
+
+    @property
+    def is_changed_on_disk(self) -> bool:
+        """Whether the file that the drawing is saved in has been changed by another program."""
+        return self.file is not None and _seen(self.file) != self._seen
+
+    def allow_replacing(self) -> None:
+        """Take the file on disk as it is now: the next save may replace it."""
+        self._seen = _seen(self.file)
 
     def start(
         self,
@@ -66,6 +93,8 @@ class Exports:
         path: Path,
         options: Mapping[str, Any],
         inputs: tuple[Path, ...] = (),
+        *,
+        is_copy: bool = False,
     ) -> None:
         """Write a drawing as it is now.
 
@@ -73,6 +102,8 @@ class Exports:
         ----------
         options : mapping
             Of the file's format; see `stippler.export.save`.
+        is_copy : bool
+            Whether the drawing stays that of the file it was saved in before.
         inputs : paths
             The files that the drawing was made from, which are never written over.
         """
@@ -81,7 +112,7 @@ class Exports:
         self._request = self._worker.start(
             lambda: work.export_drawing(drawing, path, options, inputs, writing)
         )
-        self._mark = _mark(document)
+        self._mark, self._is_copy = _mark(document), is_copy
         self._messages.say(f"writing {path.name}")
 
     def lack(self, document: Document) -> bool:
@@ -93,24 +124,41 @@ class Exports:
         history = document.history
         return any(not step.of_job for step in history.steps[: history.n_done])
 
-    def poll(self) -> bool:
-        """Take what the worker has done; return whether anything changed."""
+    def poll(self) -> Path | None:
+        """Take what the worker has done; return what has been written or has failed to be."""
         update = self._worker.poll()
-        return update is not None and self._apply(update)
+        return self._apply(update) if update is not None else None
 
-    def _apply(self, update: Update[Path]) -> bool:
+    def _apply(self, update: Update[Path]) -> Path | None:
         """Take an export's update; that of an old request changes nothing."""
         if update.request_id != self._request or not update.ended:
-            return False
+            return None
         self._request = None
         if update.failure is not None:
             self._messages.say(str(update.failure), ERROR, update.failure.__cause__)
         elif update.ended == "finished" and update.result is not None:
             self.n_written += 1
             if self._mark is not _NEVER:  # else another drawing has been opened meanwhile
-                self.path, self._written_mark = update.result, self._mark
+                self._note(update.result)
             self._messages.say(f"{update.result} is written")
-        return True
+            return update.result
+        return Path()
+
+    def _note(self, path: Path) -> None:
+        """Remember where the drawing is now."""
+        if path.suffix.lower() != SAVED:
+            self.path = path
+        elif not self._is_copy:
+            self.file, self._seen, self._written_mark = path, _seen(path), self._mark
+
+
+def _seen(path: Path | None) -> tuple[int, int] | None:
+    """Return what tells a file's content from another's; None where there is no file."""
+    try:
+        status = path.stat() if path is not None else None
+    except OSError:
+        return None
+    return (status.st_mtime_ns, status.st_size) if status is not None else None
 
 
 def _mark(document: Document) -> object:

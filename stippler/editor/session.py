@@ -9,8 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from stippler.drawing.adjustment import NEUTRAL
-from stippler.editor.activity import Activity, Filling, Idle, Job, Making, Opening, Relaxing
-from stippler.editor.exports import Exports
+from stippler.editor.activity import (
+    Activity,
+    Filling,
+    Idle,
+    Job,
+    Making,
+    Opening,
+    Relaxing,
+    Reopening,
+)
+from stippler.editor.exports import SAVED, Exports
+from stippler.editor.keeping import Keeping
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
 from stippler.errors import ParameterError, StipplerError
@@ -24,6 +34,7 @@ if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing, Page
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
+    from stippler.files.native.recovery import Lost
     from stippler.jobs.worker import Update, Worker
 
 Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
@@ -77,6 +88,8 @@ class Session:
         width_mm: float,
         stipple: Stipple,
         make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
+        is_warm: Callable[[], bool] = lambda: True,
+        recovery: Path | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
@@ -90,6 +103,8 @@ class Session:
         self.filling = FillValues()
         self.messages = Messages(clock)
         self.exports = Exports(exporter, self.messages)
+        self.keeping = Keeping(recovery, self.messages, clock)
+        self._is_warm = is_warm
         self._read: Source | None = None  # where the drawing's picture came from
         self._steps = StepRate()
 
@@ -101,12 +116,43 @@ class Session:
         adjustment = self.adjustment if again else NEUTRAL
         self._begin(Source(path, self.tone, self.width_mm, adjustment))
 
+    def open_drawing(self, path: Path) -> None:
+        """Open a drawing that was saved."""
+        self._reopen(work.open_drawing(path, is_warm=self._is_warm), file=path)
+
+    def recover(self, lost: Lost) -> None:
+        """Open what a crash has left of a drawing."""
+        self._reopen(work.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
+
+    def _reopen(self, job: Iterator[Work], *, file: Path | None, lost: Lost | None = None) -> None:
+        self._supersede()
+        request = self._worker.start(lambda: job)
+        self._run(Reopening(request, work.READ, file=file, lost=lost))
+
+    def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
+        """Open a drawing that was kept; what a crash had left of it goes when it is kept anew."""
+        is_table = file is not None and file.suffix.lower() != SAVED
+        self._open(document, None, None if is_table else file, lost)
+        reference = document.drawing.reference
+        if reference is not None:
+            self.tone, self.width_mm = reference.source.tone, reference.width_mm
+            self.adjustment = reference.adjustment
+            picture = reference.source
+            self._read = Source(
+                Path(picture.name or "picture"), self.tone, self.width_mm, NEUTRAL, picture.data
+            )
+        self.plan = document.drawing.style_of(0)
+        if lost is not None:
+            self.messages.say(f"{lost.name} is as it was; save it to keep it")
+
     def show(self, drawing: Drawing, source: Source | None = None) -> None:
         """Open a drawing that is there; a job that runs is superseded."""
+        from stippler.drawing.document import Document
+
         if isinstance(self.activity, Job):
             self._worker.stop()
             self._end("stopped")
-        self._open(drawing, source)
+        self._open(Document(drawing), source)
         self.activity = Idle()
 
     def start(self) -> None:
@@ -243,6 +289,21 @@ class Session:
         inputs = tuple(source.path for source in (self.source, self._asked) if source)
         self.exports.start(self.document, path, {"dpi": dpi}, inputs)
 
+    def save(self, path: Path, *, is_copy: bool = False) -> None:
+        """Write all of the drawing to a file of its own, to go on with later.
+
+        Parameters
+        ----------
+        is_copy : bool
+            Whether the drawing stays that of the file it was saved in before.
+        """
+        if self.exporting:
+            self.messages.say("the last file is still being written", WARNING)
+        elif self.document is None:
+            self.messages.say("there is no drawing to save yet", WARNING)
+        else:
+            self.exports.start(self.document, path, {}, is_copy=is_copy)
+
     # --- what the workers did ---------------------------------------------------------------
 
     def poll(self) -> bool:
@@ -250,7 +311,11 @@ class Session:
         changed = False
         if (update := self._worker.poll()) is not None:
             changed = self.apply(update)
-        return self.exports.poll() or changed
+        written = self.exports.poll()
+        if written is not None and written == self.exports.file:
+            self.keeping.saved(written)
+        self.keeping.poll()
+        return written is not None or changed
 
     def apply(self, update: Update[Work]) -> bool:
         """Take a job's update; that of an old request changes nothing and returns False.
@@ -321,7 +386,7 @@ class Session:
 
     @property
     def unsaved(self) -> bool:
-        """Whether work of a person's hand is in the drawing and not in the file last written."""
+        """Whether work of a person's hand is in the drawing and not in the file it is saved in."""
         return self.document is not None and self.exports.lack(self.document)
 
     @property
@@ -359,6 +424,8 @@ class Session:
     def name(self) -> str:
         """File name of the picture that is open or being opened."""
         source = self._asked
+        if self.exports.file is not None and not isinstance(self.activity, Opening):
+            return shown(self.exports.file.name)
         return (
             shown(source.path.name) if source else "Untitled" if self.document is not None else ""
         )
@@ -435,21 +502,27 @@ class Session:
 
     def open_page(self, page: Page, source: Source | None, reference: Reference | None) -> None:
         """Begin another drawing."""
+        from stippler.drawing.document import Document
         from stippler.drawing.drawing import Drawing
 
         drawing = Drawing.blank(page, self.plan)
         drawing.reference = reference
         if source is not None and (self._read is None or self._read.path != source.path):
             self.adjustment = source.adjustment
-        self._open(drawing, source)
+        self._open(Document(drawing), source)
 
-    def _open(self, drawing: Drawing, source: Source | None) -> None:
-        from stippler.drawing.document import Document
-
+    def _open(
+        self,
+        document: Document,
+        source: Source | None,
+        file: Path | None = None,
+        lost: Lost | None = None,
+    ) -> None:
         if self.document is not None:
             self.document.history.close()
-        self.document, self._read = Document(drawing), source
-        self.exports.begin_drawing()
+        self.document, self._read = document, source
+        self.exports.begin_drawing(file, None if lost else document)
+        self.keeping.open(document, self.name, file, lost)
         self.revision += 1
 
     def _guarded(self, act: Callable[[], object]) -> None:

@@ -86,9 +86,9 @@ class Findings:
 
     @property
     def n(self) -> int:
-        """How many faults there are, lost tone apart."""
-        every = (self.too_small, self.too_close, self.bleeding, self.off_page, self.cut)
-        return sum(map(len, every))
+        """How many faults there are, lost tone apart; a pair with two faults counts once."""
+        pairs = np.unique(np.concatenate([self.too_close, self.bleeding]), axis=0)
+        return sum(map(len, (self.too_small, pairs, self.off_page, self.cut)))
 
     def lines(self) -> list[str]:
         """Return a line for each kind of fault."""
@@ -162,6 +162,10 @@ def _beside(drawing: Drawing) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     size = np.array([page.width_mm, page.height_mm])
     low, high = dots.position_mm - far, dots.position_mm + far
     off = np.asarray(((high <= 0) | (low >= size)).any(axis=1))
+    # at a corner the box may touch what the dot does not
+    away = np.clip(dots.position_mm, 0, size) - dots.position_mm
+    towards = _reach(dots, np.arange(len(dots)), np.arctan2(away[:, 1], away[:, 0]))
+    off |= (away != 0).all(axis=1) & (np.hypot(away[:, 0], away[:, 1]) >= towards)
     cut = np.asarray(((low < -1e-9) | (high > size + 1e-9)).any(axis=1))
     return off, cut
 

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,9 +23,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
+    from stippler.drawing.document import Document
     from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
+    from stippler.files.native.recovery import Lost
     from stippler.stippling.fill import Filling
     from stippler.stippling.plan import Plan
     from stippler.stippling.stipple import Progress
@@ -36,12 +38,19 @@ _LOOK_S = 0.1  # between two looks at a pause or a stop
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A picture and how tone is taken from it."""
+    """A picture and how tone is taken from it.
+
+    Attributes
+    ----------
+    data : bytes or None
+        The picture's file, where a drawing holds it; it is not looked for on disk then.
+    """
 
     path: Path
     tone: str
     width_mm: float
     adjustment: Adjustment = NEUTRAL
+    data: bytes | None = field(default=None, compare=False, repr=False)
 
     def is_read_as(self, other: Source | None) -> bool:
         """Whether both come from the file alike, however they are adjusted then."""
@@ -68,6 +77,8 @@ class Work:
         What their radii are to be.
     points_mm : (n, 2) float64 or None
         Where an area is to have more dots.
+    document : Document or None
+        A drawing that was kept; nobody else holds it.
     """
 
     stage: str
@@ -78,6 +89,7 @@ class Work:
     moved_mm: NDArray[np.float64] | None = None
     radius_mm: NDArray[np.float32] | None = None
     points_mm: NDArray[np.float64] | None = None
+    document: Document | None = None
 
 
 def stipple_picture(
@@ -90,9 +102,7 @@ def stipple_picture(
     """
     if reference is None:
         yield Work(READ)
-        from stippler.files.read.picture import read_picture
-
-        reference = read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+        reference = _read(source)
         yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
     reference = reference.adjusted(source.adjustment)
     if not is_warm():
@@ -104,6 +114,17 @@ def stipple_picture(
     for progress in stages(reference, plan):
         yield Work(progress.stage, progress.done, progress.total, reference, progress)
     warm_up_brushes()
+
+
+def _read(source: Source) -> Reference:
+    """Read a picture: from the drawing that holds it, or from its file."""
+    from stippler.drawing.reference import Reference
+    from stippler.files.read.picture import picture_of_bytes, read_picture
+
+    if source.data is None:
+        return read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+    picture = picture_of_bytes(source.data, source.path.name, source.tone)
+    return Reference.of(picture, source.width_mm)
 
 
 def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:
@@ -198,6 +219,39 @@ def carry_on(
     for made in carry_on(reference, plan, position_mm, radius_mm, n_done):
         solved = made.radius_mm if made.stage == "done" else None
         yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
+
+
+def open_drawing(path: Path, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Open a drawing that was saved."""
+    yield Work(READ)
+    from stippler.drawing.document import Document
+    from stippler.opening import open_file
+
+    document = Document(open_file(path))
+    yield Work(READ, 1, 1)
+    yield from make_ready(is_warm=is_warm)
+    yield Work(PREPARE, 1, 1, document=document)
+
+
+def recover(lost: Lost, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Make a drawing anew that a crash has left, with all its steps."""
+    yield Work(READ)
+    document = recovered(lost)
+    yield from make_ready(is_warm=is_warm)
+    yield Work(PREPARE, 1, 1, document=document)
+
+
+def recovered(lost: Lost) -> Document:
+    """Return the drawing that a crash has left, as its last whole step was."""
+    from stippler.drawing.document import Document
+    from stippler.files.native.drawing_file import drawing_of
+    from stippler.files.native.edit_log import replay
+    from stippler.files.read.picture import picture_of_bytes
+
+    members, journal = lost.read()
+    document = Document(drawing_of(members, picture_of_bytes, lost.name)[0])
+    replay(document, journal.records, picture_of_bytes)
+    return document
 
 
 def fill(outline: Polygon | MultiPolygon, values: Filling) -> Iterator[Work]:

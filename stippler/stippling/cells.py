@@ -12,8 +12,8 @@ from stippler.errors import ParameterError
 from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
-from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.spacing import MASS, PER_AREA
+from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
+from stippler.kernels.cells.spacing import MASS, NEIGHBOUR
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
@@ -107,7 +107,7 @@ class Cells:
         count = np.bincount(self.compartment_of_dot, minlength=n_parts)
         unit = np.divide(count, mass, out=np.ones(n_parts), where=mass > 0)
         found[:, MASS] *= unit[self.compartment_of_dot]
-        found[:, PER_AREA] *= unit[self.compartment_of_dot]
+        found[:, NEIGHBOUR] /= np.sqrt(unit[self.compartment_of_dot])
         self.rules = self.rules._replace(unit=unit, wants=found, found=self.rules.wants)
 
     def set_rules(self, rules: Rules) -> None:
@@ -172,7 +172,7 @@ class Cells:
         cells = np.zeros((self.n, 6))
         rows = np.arange(self.n, dtype=np.int32)
         rules, self.rules = self.rules, LLOYD
-        self._relax(rows, False, self._new_moves(), cells, weighted, _NO_STARS)
+        self._relax(rows, False, self._scratch_moves(), cells, weighted, _NO_STARS)
         self.rules = rules
         out = np.empty_like(cells)
         out[self.order] = cells
@@ -188,7 +188,7 @@ class Cells:
         row_of_dot[self.order] = np.arange(self.n, dtype=np.int32)
         found: dict[int, Outlines] = {}
         n_sides = np.zeros(self.n, np.int32)
-        new = self._new_moves()
+        new = self._scratch_moves()
         dots = self._dots._replace(fixed=np.empty(0, np.bool_))
 
         def part(start: int, stop: int) -> None:
@@ -231,6 +231,10 @@ class Cells:
         new = np.zeros(n + SCAN), np.zeros(n + SCAN), np.empty(n)
         return Moves(*new, self._kind_of_cell, self._free_of_dot)
 
+    def _scratch_moves(self) -> Moves:
+        """Return room for moves that leaves what is known of kept cells alone."""
+        return self._new_moves()._replace(kind=np.zeros(self.n, np.uint8), free=np.empty(self.n))
+
     @property
     def _dots(self) -> Dots:
         return Dots(self.xs, self.ys, self.fixed, self.compartment_of_dot)
@@ -264,7 +268,7 @@ class Cells:
             )  # fmt: skip
             if not done:
                 return False
-            rows = np.flatnonzero(self._kind_of_cell == TOO_MANY_CORNERS).astype(np.int32)
+            rows = np.flatnonzero(new.kind == TOO_MANY_CORNERS).astype(np.int32)
             which = rows if is_all else np.intersect1d(which, rows).astype(np.int32)
             is_all, n, cap = False, len(which), 16 * cap
         return True
@@ -272,7 +276,24 @@ class Cells:
     def _step_from_nothing(self, new: Moves, cancel: Question) -> bool:
         new = new._replace(kind=self._kind_of_cell, free=self._free_of_dot)
         stars = Stars(self._star, self._n_star, _NO_FLAGS)
-        return self._relax(_NO_ROWS, True, new, stars=stars, cancel=cancel)
+        done = self._relax(_NO_ROWS, True, new, stars=stars, cancel=cancel)
+        if done:
+            self._distrust(np.ones(self.n, np.bool_))
+        return done
+
+    def _distrust(self, computed: NDArray[np.bool_]) -> None:
+        """Have cells of concave compartments computed anew in each step that others do not confirm.
+
+        Beyond a side of theirs lies what is nobody's, since a border cuts its cell apart.
+        """
+        if self.parts.is_convex.all() or len(self.rules.table):
+            return  # by rules, all cells at a border are computed in each step
+        of_dot = self.compartment_of_dot
+        rows = np.flatnonzero(computed & ~self.parts.is_convex[of_dot]).astype(np.int32)
+        todo = np.zeros(self.n, np.uint8)
+        parallel_for(check_stars, len(rows), rows, self._star, self._n_star, todo, grain=1024)
+        kind = self._kind_of_cell
+        kind[(todo != 0) & (kind == INNER)] = RIM
 
     def _step_from_stars(self, new: Moves, cancel: Question) -> bool:
         """Move dots by verified stars; False if that is not worth it now, or cancelled."""
@@ -301,6 +322,8 @@ class Cells:
             stars.suspect[:] = 0
             parallel_for(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
             which = rows[todo[rows] != 0]
+        if done:
+            self._distrust(settled)
         return done
 
     def _sort(self, with_stars: bool = False, cancel: Question = None) -> bool:

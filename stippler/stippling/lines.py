@@ -57,7 +57,8 @@ class LineIndex:
         low, high = _bounds(self.segments, float(far.max(initial=1.0)))
         size = high - low
         self._cell = max(
-            float(np.median(far)) if len(far) else 1.0, math.sqrt(size[0] * size[1] / _MOST_CELLS)
+            0.5 * float(np.median(far)) if len(far) else 1.0,
+            math.sqrt(size[0] * size[1] / _MOST_CELLS),
         )
         self._low = low
         self._columns, self._rows = (int(v // self._cell) + 1 for v in size)
@@ -72,6 +73,9 @@ class LineIndex:
         start = np.cumsum(start)
         listed = np.empty(start[-1], np.int64)
         list_segments(self.segments, far, *grid, start.copy(), listed, False)
+        d = self.segments[:, 2:4] - self.segments[:, :2]
+        self._inverse = 1.0 / np.maximum((d * d).sum(axis=1), 1e-300)
+        self._widest = float(self.segments[:, 4:6].max(initial=0.0))
         self._grid = (self.segments, *grid, start, listed)
 
     def at(self, line: Ints, along: Points) -> Points:
@@ -81,12 +85,18 @@ class LineIndex:
 
     def nearest(self, points: Points) -> tuple[Ints, Points, Points]:
         """Return for each point its line or -1, arc length along it, distance to its edge."""
+        return self.nearest_feet(points)[:3]
+
+    def nearest_feet(self, points: Points) -> tuple[Ints, Points, Points, Points]:
+        """Return what `nearest` does, and the nearest place on the line's axis."""
         at = np.ascontiguousarray(points, np.float64)
         n = len(at)
-        which, along, away = np.empty(n, np.int64), np.empty(n), np.empty(n)
-        parallel_for(find_nearest, n, at, *self._grid, which, along, away)
+        which, along, away, feet = np.empty(n, np.int64), np.empty(n), np.empty(n), at.copy()
+        parallel_for(
+            find_nearest, n, at, *self._grid, self._inverse, self._widest, which, along, away, feet
+        )
         line = np.where(which >= 0, self.line_of[which] if len(self.line_of) else -1, -1)
-        return line, along, np.where(which >= 0, away, np.inf)
+        return line, along, np.where(which >= 0, away, np.inf), feet
 
     def keep_distance(self, points: Points) -> tuple[Points, NDArray[np.bool_]]:
         """Return points moved so that each keeps its lines' distances, and whether it does.
@@ -143,15 +153,16 @@ def adhere(index: LineIndex, points: Points, tone: Tone | None = None) -> Adhere
     Dots within half the reach come to lie on the line, and are spread along it in one dimension;
     beyond, the pull falls off smoothly to nothing at the reach's end.
     """
-    line, along, away = index.nearest(points)
+    line, along, away, feet = index.nearest_feet(points)
     out = np.array(points, np.float64)
     reach = np.array([k.reach_mm for k in index.lines] or [1.0])[line]
     share = np.where(line >= 0, np.clip(2.0 - 2.0 * np.maximum(away, 0.0) / reach, 0.0, 1.0), 0.0)
     on = share >= 1.0
     pulled = np.flatnonzero((share > 0.0) & ~on)
     share = 0.5 * (share * share * (3.0 - 2.0 * share))[pulled, None]
-    out[pulled] += share * (index.at(line[pulled], along[pulled]) - out[pulled])
+    out[pulled] += share * (feet[pulled] - out[pulled])
     mine = np.flatnonzero(on)
+    mine = mine[np.lexsort((along[mine], line[mine]))]
     along[mine] = _spread_many(index, line[mine], along[mine], tone)
     out[mine] = index.at(line[mine], along[mine])
     return Adhered(out, np.where(on, line, -1), np.where(on, along, 0.0))

@@ -186,6 +186,7 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
+        self.popups.recovery.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()

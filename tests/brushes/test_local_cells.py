@@ -14,7 +14,6 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.page import Page
-from stippler.stippling.fill import Filling, fill_drawing
 from stippler.stippling.relax import Relaxation
 from tests.stippling.shapes import comb, points_in
 
@@ -66,9 +65,10 @@ def test_local_cells_are_those_of_the_whole_drawing(seed, n, kind, name, chosen)
 
 
 def test_a_row_of_a_hexagonal_fill_stays():
-    drawing = Drawing.blank(Page(100, 100))
-    document = Document(drawing)
-    fill_drawing(drawing, document, Filling(2000, "hexagonal", 0.4))
+    side = np.sqrt(5.0 * 2.0 / np.sqrt(3.0))  # cells of 5 mm²
+    row, column = np.mgrid[0 : int(79 / (side * np.sqrt(0.75))), 0 : int(98 / side)]
+    x, height = side * (column + 0.5 * (row % 2) + 0.25), side * np.sqrt(0.75) * (row + 0.5)
+    document = document_of(np.c_[x.ravel(), height.ravel()])
     y = np.unique(document.dots.position_mm[:, 1])[20]
     corners = [(30, y - 0.3), (70, y - 0.3), (70, y + 0.3), (30, y + 0.3)]
     ids = selection.in_outline(document, corners)

@@ -33,7 +33,9 @@ def test_counts_are_shapelys(seed, n, print_width):
     process = Process(print_width, 0.3, 0.4, 0.15)
     found = check(drawing(dots), process)
     scale = (print_width or 40.0) / 40.0
-    discs = shapely.buffer(shapely.points(dots.position_mm * scale), dots.radius_mm * scale, 64)
+    discs = shapely.buffer(
+        shapely.points(dots.position_mm * scale), dots.radius_mm * scale, quad_segs=64
+    )
     gaps = {(i, j): shapely.distance(discs[i], discs[j]) for i in range(n) for j in range(i + 1, n)}
     near = 1e-3
     for pairs, limit in ((found.too_close, 0.4), (found.bleeding, 0.3)):
@@ -133,7 +135,7 @@ def test_the_gain_is_found_from_what_a_sheet_measures(gain):
         dots = sheet.dots.take((x >= 18 * k) & (x < 18 * (k + 1)))
         middle = shapely.box(18 * k + 4, 4, 18 * k + 14, 14)
         printed = shapely.union_all(
-            shapely.buffer(shapely.points(dots.position_mm), dots.radius_mm + gain, 32)
+            shapely.buffer(shapely.points(dots.position_mm), dots.radius_mm + gain, quad_segs=32)
         )
         measured.append(printed.intersection(middle).area / middle.area)
         if gain == 0:
@@ -159,3 +161,11 @@ def test_values_no_sheet_measures():
         checks.gain_of([0.1, 0.2])
     with pytest.raises(ParameterError, match="7 shares"):
         checks.gain_of([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1.7])
+
+
+def test_a_dot_beside_a_corner_lies_beside_the_page():
+    """Its box touches the page, and its disc does not; found by Hypothesis."""
+    dots = Dots.round([(-0.4, -0.4), (40.3, 30.3)], 0.5)
+    found = check(drawing(dots), Process())
+    assert found.off_page.tolist() == [0]
+    assert found.cut.tolist() == [1]

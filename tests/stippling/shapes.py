@@ -41,6 +41,26 @@ def spiked() -> Polygon:
     return polygon.difference(box(0.9, 0.3, 1 - 1e-9, 0.6))
 
 
+def star(points: int = 24) -> Polygon:
+    a = np.arange(2 * points) * np.pi / points
+    r = np.where(np.arange(2 * points) % 2, 0.8, 3.0)
+    return Polygon(np.c_[r * np.cos(a), r * np.sin(a)])
+
+
+def gear(teeth: int = 14) -> Polygon:
+    a = np.arange(4 * teeth) * np.pi / (2 * teeth)
+    r = np.where(np.arange(4 * teeth) % 4 < 2, 2.0, 3.0)
+    return Polygon(np.c_[r * np.cos(a), r * np.sin(a)]).difference(Point(0, 0).buffer(1.6))
+
+
+def spiral(turns: float = 3.0, width: float = 0.5) -> Polygon:
+    a = np.linspace(0, 2 * np.pi * turns, 90)
+    inner, outer = 0.6 + a / (2 * np.pi), 0.6 + width + a / (2 * np.pi)
+    out = np.c_[outer * np.cos(a), outer * np.sin(a)]
+    back = np.c_[inner * np.cos(a), inner * np.sin(a)]
+    return Polygon(np.vstack([out, back[::-1]]))
+
+
 def points_in(polygon: Polygon, n: int, seed: int) -> np.ndarray:
     rng = np.random.default_rng(seed)
     x0, y0, x1, y1 = polygon.bounds

@@ -8,11 +8,13 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
+from shapely import affinity
 from shapely.geometry import LineString, MultiPoint, MultiPolygon, Point, Polygon, box
 
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling import cells, relax_local
 from stippler.stippling.relax import DensityField, Relaxation, relax
+from tests.stippling.shapes import comb, spiked, star_polygon
 
 HOLED = (
     Polygon([(0, 0), (10, 0), (10, 10), (6, 10), (6, 3), (5, 3), (5, 10), (0, 10)])
@@ -73,17 +75,28 @@ def subdivision(n, seed):
 
 @given(
     seed=st.integers(0, 10**6), n=st.integers(1, 250), n_parts=st.sampled_from([1, 4, 20]),
-    over=st.sampled_from([1.0, 1.5, 0.7]), weighted=st.booleans(), hexagons=st.booleans(),
+    over=st.sampled_from([1.0, 1.5, 0.7]), weighted=st.booleans(),
+    shape=st.sampled_from(["parts", "round", "concave", "spiked", "comb", "holed", "slit"]),
 )  # fmt: skip
-@settings(max_examples=60, deadline=None)
-def test_stars_with_edges_equal_cells_from_nothing(seed, n, n_parts, over, weighted, hexagons):
-    """Cells at borders of convex compartments, kept over whole runs."""
+@settings(max_examples=150, deadline=None)
+def test_stars_with_edges_equal_cells_from_nothing(seed, n, n_parts, over, weighted, shape):
+    """Cells at borders, kept over whole runs, convex and concave, cut apart and not."""
     parts = subdivision(n_parts, seed)
-    if hexagons:
+    if shape == "round":
         a = np.arange(17) * np.pi / 8.5
         parts = [Polygon(0.5 + 0.4 * np.c_[np.cos(a), np.sin(a)])]
+    elif shape == "concave":
+        parts = [star_polygon(seed, 3 + seed % 40)]
+    elif shape == "spiked":
+        parts = [spiked()]
+    elif shape == "comb":
+        parts = [affinity.scale(comb(4), 0.25, 1.0, origin=(0, 0))]
+    elif shape == "holed":
+        parts = [affinity.scale(HOLED, 0.1, 0.1, origin=(0, 0))]
+    elif shape == "slit":
+        parts = [box(0, 0, 1, 1).difference(box(0.5, 0.1, 0.5 + 10.0 ** -(seed % 8), 1))]
     rng = np.random.default_rng(seed)
-    points = rng.random((n, 2))
+    points = 3 * rng.random((3 * n, 2)) - 1 if shape == "concave" else rng.random((n, 2))
     points = points[shapely.intersects_xy(shapely.unary_union(parts), *points.T)]
     density = DensityField(rng.random((9, 9)) + 0.05, 1 / 9) if weighted else None
     with pytest.MonkeyPatch.context() as patch:

@@ -3,16 +3,30 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import Point, Polygon, box
 
 from stippler.stippling.density import DensityField
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.tessellation import Tessellation
-from tests.stippling.shapes import comb, half_planes, points_in, spiked, star_polygon
+from tests.stippling.shapes import (
+    comb,
+    gear,
+    half_planes,
+    points_in,
+    spiked,
+    spiral,
+    star,
+    star_polygon,
+)
 
-SETTINGS = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+SETTINGS = settings(
+    max_examples=40,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+    phases=[p for p in Phase if p is not Phase.shrink],
+)
 
 
 def pieces(points, polygon):
@@ -51,6 +65,56 @@ def assert_is_right(cells: Tessellation, polygon: Polygon) -> None:
 def test_outlines_are_shapelys(seed, corners, n):
     polygon = star_polygon(seed, corners)
     assert_is_right(Tessellation.of(points_in(polygon, n, seed), polygon), polygon)
+
+
+def sliver(seed: int) -> Polygon:
+    width = 10.0 ** -(1 + seed % 6)
+    return Polygon([(0, 0), (3, 0.5), (3, 0.5 + width), (1, 1 / 6 + width)])
+
+
+MAKERS = [
+    lambda seed: star_polygon(seed, 3 + seed % 40), lambda seed: comb(2 + seed % 5),
+    lambda seed: gear(5 + seed % 12), lambda seed: spiral(1.5, 0.2 + 0.1 * (seed % 6)),
+    lambda seed: star(4 + seed % 20), lambda seed: box(0, 0, 1 + seed % 3, 2), sliver,
+]  # fmt: skip
+
+
+@settings(SETTINGS, max_examples=60)
+@given(data=st.data())
+def test_subdivisions_to_1e_10(data):
+    """Areas, masses and centroids of many compartments at once, dots on walls and in corners."""
+    shapes, dots, owner = [], [], []
+    for k in range(data.draw(st.integers(1, 5))):
+        seed = data.draw(st.integers(0, 1000))
+        shape = data.draw(st.sampled_from(MAKERS))(seed)
+        shapes.append(shapely.transform(shape, lambda xy, k=k: np.add(xy, (8.0 * k, 0.0))))
+        xy = points_in(shapes[-1], data.draw(st.sampled_from([0, 1, 2, 12, 60])), seed)
+        if len(xy) and data.draw(st.booleans()):
+            corners = shapely.get_coordinates(shapes[-1])[:-1]
+            xy = np.vstack([xy, corners[seed % len(corners)]])
+        dots.append(xy)
+        owner += [k] * len(xy)
+    values = np.random.default_rng(len(owner)).random((5, 9))
+    field = DensityField(values, (5.0, 2.0), (-4.0, -4.0))
+    points = np.concatenate(dots)
+    cells = Tessellation.of(points, shapes, np.array(owner, np.int32), field)
+    pixels = [
+        (box(5 * c - 4, 2 * r - 4, 5 * c + 1, 2 * r - 2), float(np.float32(values[r, c])))
+        for r in range(5) for c in range(9)
+    ]  # fmt: skip
+    first = 0
+    for k, shape in enumerate(shapes):
+        spacing2 = shape.area / max(len(dots[k]), 1) + 1e-5  # coordinates of 40 round to 7e-15
+        for i, piece in enumerate(pieces(dots[k], shape), start=first):
+            assert cells.area[i] == pytest.approx(piece.area, abs=1e-10 * spacing2)
+            parts = [(piece.intersection(pixel), value) for pixel, value in pixels]
+            mass = sum(part.area * value for part, value in parts)
+            assert cells.mass[i] == pytest.approx(mass, abs=1e-10 * spacing2)
+            for axis, name in enumerate("xy"):
+                moment = sum(p.area * v * getattr(p.centroid, name) for p, v in parts if p.area)
+                here = cells.centroid[i, axis] * cells.mass[i]
+                assert here == pytest.approx(moment, abs=1e-9 * spacing2)
+        first += len(dots[k])
 
 
 @pytest.mark.parametrize("polygon", [comb(6), spiked(), box(0, 0, 1, 2)], ids=str)

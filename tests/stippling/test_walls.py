@@ -10,29 +10,9 @@ from shapely.geometry import Point, Polygon, box
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.tessellation import Tessellation
 from tests.stippling.degenerate import shape_and_dots, wrong_cells
-from tests.stippling.shapes import comb, points_in, spiked
+from tests.stippling.shapes import comb, gear, points_in, spiked, spiral, star
 
 SETTINGS = settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
-
-
-def star(points: int = 24) -> Polygon:
-    a = np.arange(2 * points) * np.pi / points
-    r = np.where(np.arange(2 * points) % 2, 0.8, 3.0)
-    return Polygon(np.c_[r * np.cos(a), r * np.sin(a)])
-
-
-def gear(teeth: int = 14) -> Polygon:
-    a = np.arange(4 * teeth) * np.pi / (2 * teeth)
-    r = np.where(np.arange(4 * teeth) % 4 < 2, 2.0, 3.0)
-    return Polygon(np.c_[r * np.cos(a), r * np.sin(a)]).difference(Point(0, 0).buffer(1.6))
-
-
-def spiral(turns: float = 3.0, width: float = 0.5) -> Polygon:
-    a = np.linspace(0, 2 * np.pi * turns, 90)
-    inner, outer = 0.6 + a / (2 * np.pi), 0.6 + width + a / (2 * np.pi)
-    out = np.c_[outer * np.cos(a), outer * np.sin(a)]
-    back = np.c_[inner * np.cos(a), inner * np.sin(a)]
-    return Polygon(np.vstack([out, back[::-1]]))
 
 
 SHAPES = {"star": star(), "gear": gear(), "spiral": spiral(), "comb": comb(5), "spiked": spiked()}

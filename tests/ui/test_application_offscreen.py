@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import stippler
 from stippler.app import App
 from stippler.stippling.plan import Plan
 from stippler.ui.panels.layout import DRAWING, HISTORY, TOOL, VIEW
@@ -221,7 +222,7 @@ def test_look_and_values_survive(start: Start) -> None:
     assert desk.app.editor.look.opacity == 0.8
     assert (desk.app.session.tone, desk.app.session.width_mm) == ("perceptual", 77.0)
     run_by_name(desk, "values as at first")
-    assert (desk.app.session.tone, desk.app.session.width_mm) == ("linear", 148.0)
+    assert (desk.app.session.tone, desk.app.session.width_mm) == ("illustration", 148.0)
 
 
 def test_text_and_panels_grow_at_once(start: Start) -> None:
@@ -379,7 +380,7 @@ def test_closing_with_a_dialog_open_asks_in_its_place(desk, picture: Path) -> No
     desk.app.window.input.close()
     desk.host.settle()
     assert not desk.host.shown("path")
-    desk.host.click("Export…")
+    desk.host.click("Save")
     desk.app.window.input.close()  # the question is being answered
     desk.host.settle()
     assert desk.host.shown("path")
@@ -397,19 +398,20 @@ def test_undone_changes_are_none(desk, picture: Path) -> None:
 def test_export_then_close(desk, picture: Path, tmp_path: Path) -> None:
     left = painted(desk, picture)
     desk.host.key("q", ctrl=True)
-    desk.host.click("Export…")
-    desk.host.fill("path", str(tmp_path / "kept.csv"))
+    desk.host.click("Save")
+    desk.host.fill("path", str(tmp_path / "kept.stipple"))
     desk.host.until(lambda: desk.app.window.wants_to_close, "the end")
-    assert len((tmp_path / "kept.csv").read_text().splitlines()) == 1 + left
+    assert len(stippler.open(tmp_path / "kept.stipple").dots) == left
 
 
 def test_export_then_close_while_dots_relax(desk, picture: Path, tmp_path: Path) -> None:
-    painted(desk, picture)
+    left = painted(desk, picture)
     desk.app.session.relax(100_000, weighted=True)
     desk.host.key("q", ctrl=True)
-    desk.host.click("Export…")
-    desk.host.fill("path", str(tmp_path / "kept.csv"))
+    desk.host.click("Save")
+    desk.host.fill("path", str(tmp_path / "kept.stipple"))
     desk.host.until(lambda: desk.app.window.wants_to_close, "the end")
+    assert len(stippler.open(tmp_path / "kept.stipple").dots) == left
 
 
 def test_an_export_that_is_cancelled_or_fails_closes_nothing(
@@ -417,13 +419,13 @@ def test_an_export_that_is_cancelled_or_fails_closes_nothing(
 ) -> None:
     painted(desk, picture)
     desk.host.key("q", ctrl=True)
-    desk.host.click("Export…")
+    desk.host.click("Save")
     desk.host.key("escape")
     desk.host.settle()
     assert not desk.app.editor.popups.filing.guard.is_open
     desk.host.key("q", ctrl=True)
-    desk.host.click("Export…")
-    desk.host.fill("path", str(tmp_path / "nowhere" / "kept.csv"))
+    desk.host.click("Save")
+    desk.host.fill("path", str(tmp_path / "nowhere" / "kept.stipple"))
     desk.host.until(lambda: not desk.app.session.exporting, "the failure")
     desk.host.settle()
     assert "folder does not exist" in desk.host.said()
@@ -458,9 +460,9 @@ def test_another_drawing_asks_first(desk, picture: Path, tmp_path: Path) -> None
     assert not desk.app.session.unsaved
 
 
-def test_export_again_asks_for_no_path(desk, picture: Path, tmp_path: Path) -> None:
+def test_saving_again_asks_for_no_path(desk, picture: Path, tmp_path: Path) -> None:
     painted(desk, picture)
-    out = tmp_path / "out.csv"
+    out = tmp_path / "out.stipple"
     desk.host.key("s", ctrl=True)
     desk.host.fill("path", str(out))
     desk.host.until(lambda: not desk.app.session.exporting, "the export")
@@ -478,7 +480,7 @@ def test_export_again_asks_for_no_path(desk, picture: Path, tmp_path: Path) -> N
     desk.host.key("s", ctrl=True)
     assert not desk.app.editor.popups.dialogs.is_open
     desk.host.until(lambda: not desk.app.session.exporting, "the export")
-    assert len(out.read_text().splitlines()) == 1 + desk.app.session.n_dots
+    assert len(stippler.open(out).dots) == desk.app.session.n_dots
     desk.host.key("s", ctrl=True, shift=True)
     assert desk.app.editor.popups.dialogs.is_open
 

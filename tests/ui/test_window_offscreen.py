@@ -210,7 +210,7 @@ def test_export_asks_before_it_replaces_a_file(desk, picture: Path, tmp_path: Pa
     out = tmp_path / "out.csv"
     out.write_text("precious")
     for verb, kept in (("Cancel", True), ("Replace", False)):
-        desk.host.key("s", ctrl=True)
+        desk.host.key("e", ctrl=True)
         desk.host.fill("path", str(out))
         assert desk.host.shown("Replace")
         assert out.read_text() == "precious"
@@ -223,7 +223,7 @@ def test_export_asks_before_it_replaces_a_file(desk, picture: Path, tmp_path: Pa
 
 def test_a_png_is_exported_while_the_window_draws(desk, picture: Path, tmp_path: Path) -> None:
     open_and_finish(desk, picture)
-    desk.host.key("s", ctrl=True)
+    desk.host.key("e", ctrl=True)
     desk.host.fill("path", str(tmp_path / "out.png"))
     desk.host.until(lambda: not desk.app.session.exporting, "the export")
     assert str(tmp_path / "out.png") in desk.host.said()
@@ -240,7 +240,7 @@ def test_a_png_is_exported_while_the_window_draws(desk, picture: Path, tmp_path:
 
 def test_an_unknown_ending_is_one_line(desk, picture: Path, tmp_path: Path) -> None:
     open_and_finish(desk, picture)
-    desk.host.key("s", ctrl=True)
+    desk.host.key("e", ctrl=True)
     desk.host.fill("path", str(tmp_path / "out.doc"))
     desk.host.until(lambda: not desk.app.session.exporting, "the export")
     assert ".doc" in desk.host.said()

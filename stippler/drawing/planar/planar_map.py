@@ -50,12 +50,12 @@ class Arc:
 
     def to_json(self) -> dict[str, Any]:
         """Return it as plain values."""
-        return {**self.path.to_json(), "left": self.left, "right": self.right}
+        return {"path": self.path.to_json(), "left": self.left, "right": self.right}
 
     @classmethod
-    def from_json(cls, data: dict[str, Any]) -> Self:
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
         """Make it of plain values."""
-        return cls(Path.from_json(data), int(data["left"]), int(data["right"]))
+        return cls(Path.from_json(data["path"]), int(data["left"]), int(data["right"]))
 
 
 class PlanarMap:

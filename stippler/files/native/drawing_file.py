@@ -36,7 +36,7 @@ ReadPicture = Callable[[bytes, str, str], Picture]
 """From a picture file's bytes, its name and a tone to the picture."""
 
 _DO = "open a backup of the drawing"
-_TABLES = (records.STYLE, records.AREA, records.LINE, records.PATTERN)
+_TABLES = (records.STYLE, records.AREA, records.LINE, records.PATTERN, records.BORDER)
 _LARGEST_ID = 2**53  # exact in any program's numbers
 _OURS = {"page", "reference", "next_id", "dots", "pictures", *_TABLES}
 _DEFAULTS: dict[str, Any] = {
@@ -183,6 +183,7 @@ def drawing_of(
         tables[records.STYLE],
         tables[records.LINE],
         tables[records.PATTERN],
+        tables[records.BORDER],
         _read_next_ids(document.get("next_id", {}), place),
     )
     _check_styles(drawing, place)

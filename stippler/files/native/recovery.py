@@ -124,6 +124,17 @@ def lost_drawings(root: Path) -> list[Lost]:
     return sorted(found, key=lambda lost: lost.left_s, reverse=True)
 
 
+def is_open_elsewhere(root: Path, path: Path) -> bool:
+    """Return whether a program that runs keeps a drawing of that file."""
+    try:
+        folders = [entry for entry in root.iterdir() if entry.is_dir()]
+    except OSError:
+        return False
+    return any(
+        _about(folder).get("path") == str(path) and not _is_left(folder) for folder in folders
+    )
+
+
 def _is_left(folder: Path) -> bool:
     """Return whether nobody holds a folder's lock."""
     try:
@@ -179,6 +190,12 @@ class Keeper:
     def is_begun(self) -> bool:
         """Whether anything is kept."""
         return bool(self._journals)
+
+    @property
+    def is_on_disk(self) -> bool:
+        """Whether the drawing that `begin` was given last is kept."""
+        done = self._thread is not None and not self._thread.is_alive()
+        return done and self.problem is None
 
     def begin(
         self, make_members: Callable[[], Members], name: str, path: Path | None, program: str

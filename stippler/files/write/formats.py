@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from stippler.errors import OutputError, ParameterError
@@ -149,6 +150,7 @@ def options_of(one: Format) -> tuple[Option, ...]:
     return (*one.options, *(() if one.is_data else PLATE))
 
 
+@cache
 def every_option() -> dict[str, tuple[Option, list[Format]]]:
     """Return all options by name, each as first declared, with the formats that have it."""
     found: dict[str, tuple[Option, list[Format]]] = {}

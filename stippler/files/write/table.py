@@ -41,24 +41,30 @@ def csv_chunks(dots: Dots) -> Iterator[bytes]:
     """Yield the table in pieces: header, then a line a dot; truth values as 0 or 1."""
     columns = columns_of(dots)
     yield (",".join(columns) + "\n").encode()
-    form = ",".join(_form(column) for column in columns.values()) + "\n"
-    write = form.format
     for start in range(0, len(dots), _CHUNK):
         rows = slice(start, start + _CHUNK)
-        values = [_listed(column[rows]) for column in columns.values()]
-        yield "".join(map(write, *values)).encode()
+        texts = [_texts(column[rows]) for column in columns.values()]
+        yield ("\n".join(map(",".join, zip(*texts, strict=True))) + "\n").encode()
 
 
-def _form(column: NDArray[Any]) -> str:
-    """Return the shortest form that keeps every bit: nine digits for floats of 32 bits."""
-    if column.dtype == np.float32:
-        return "{:.9g}"
-    return "{!r}" if column.dtype.kind == "f" else "{:d}"
-
-
-def _listed(column: NDArray[Any]) -> list[Any]:
+def _texts(column: NDArray[Any]) -> list[str]:
+    """Return the shortest texts that keep every bit: nine digits for floats of 32 bits."""
+    if (column == column[0]).all():  # most shapes are all the same
+        return [_text(column[0].item(), column.dtype)] * len(column)
     values: list[Any] = column.tolist()
-    return values
+    if column.dtype == np.float32:
+        return [f"{value:.9g}" for value in values]
+    return list(map(repr if column.dtype.kind == "f" else _whole, values))
+
+
+def _text(value: Any, dtype: np.dtype[Any]) -> str:
+    if dtype == np.float32:
+        return f"{value:.9g}"
+    return repr(value) if dtype.kind == "f" else _whole(value)
+
+
+def _whole(value: int) -> str:
+    return str(int(value))
 
 
 def csv_of(drawing: Drawing, values: Values) -> Iterator[bytes]:
@@ -76,9 +82,7 @@ def json_chunks(drawing: Drawing, values: Values) -> Iterator[bytes]:
         yield f"{', ' if k else ''}\n{json.dumps(name)}: [".encode()
         for start in range(0, len(column), _CHUNK):
             part = column[start : start + _CHUNK]
-            form = _form(part).format
-            text = ", ".join(map(form, part.tolist()))
-            yield (", " if start else "").encode() + text.encode()
+            yield (", " if start else "").encode() + ", ".join(_texts(part)).encode()
         yield b"]"
     yield b"\n}}\n"
 

@@ -20,7 +20,7 @@ from stippler.kernels.machine.simd import get
 NOWHERE = -(1 << 30)
 """Number of a side that is neither a dot's nor a border's: of what the search has seen so far."""
 
-_CLOSE = 1e-12  # of a cell's reach: what is nearer to a line than this may be on either side of it
+_CLOSE = 1e-13  # of a cell's reach: what is nearer to a line than this may be on either side of it
 _ROUNDING = 1e-12  # of all that is added and taken away again in a sum
 
 

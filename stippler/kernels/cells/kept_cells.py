@@ -8,9 +8,7 @@ locally Delaunay). Where one fails the cell is computed anew, and where that cha
 `check_stars` tells whether its neighbours agree with it. Once all agree, every cell is exact. This
 is the Delaunay lemma: a triangulation that is locally Delaunay everywhere is Delaunay.
 
-Cells at the border are kept where the compartment is convex. There a dot sees all others, so cells
-that fit together along the whole border are the true ones. In a concave one a dot may come near
-from beyond a wall, which no corner tells; its cells at the border are computed in each step.
+Cells at the border are kept as well, see `kept_borders`.
 """
 
 from __future__ import annotations
@@ -21,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field
+from stippler.kernels.cells.kept_borders import move_by_lines
 from stippler.kernels.cells.relaxation import INNER, KEPT
 from stippler.kernels.cells.spacing import ask, blend, rules_in_lanes
 from stippler.kernels.cells.tables import (
@@ -39,8 +38,6 @@ from stippler.kernels.machine.jit import ZERO, inline, inner, kernel
 from stippler.kernels.machine.simd import (
     BUFFER,
     LANES,
-    backward_sides,
-    corners_of_lines,
     corners_of_star,
     get,
     load_lanes,
@@ -80,13 +77,13 @@ def verify_stars(
         put(A, k, 0.0)
         put(B, k, 0.0)
         put(C, k, 0.0)
-    out = np.empty((LANES, 4))
+    out = np.empty((LANES, 6))
     for i in range(start, stop):
         m = ZERO + stars.n[i]
         todo[i] = 1
         if moves.kind[i] == KEPT:
-            todo[i] = not _move_by_lines(
-                U, V, A, B, C, m, i, dots, border, field, over, moves, stars, out
+            todo[i] = not move_by_lines(
+                U, V, A, B, C, m, i, dots, grid, border, field, over, moves, stars, out
             )
             continue
         if moves.kind[i] != INNER or m < 3 or m + 2 > LANES:
@@ -146,90 +143,6 @@ def _way_to_centroid(
                 return area, du, dv
         return area, over * du, over * dv
     return area, du, dv
-
-
-@inline
-def _lines_of_star(
-    A: Any, B: Any, C: Any, m: int, i: int, dots: Dots, border: Border, stars: Stars
-) -> int:
-    """Put the lines of a star's sides into A, B, C; return bits for the corners of two edges."""
-    x, y = dots.x[i], dots.y[i]
-    edge, is_edge = border.edge, 0
-    for k in range(m):
-        j = stars.around[i, k]
-        if j >= 0:
-            a, b = dots.x[j] - x, dots.y[j] - y
-            put(C, k, 0.5 * (a * a + b * b))
-        else:
-            e = -1 - j
-            is_edge |= 1 << k
-            a, b = edge[e, 3] - edge[e, 1], edge[e, 0] - edge[e, 2]
-            put(C, k, a * (edge[e, 0] - x) + b * (edge[e, 1] - y))
-        put(A, k, a)
-        put(B, k, b)
-    for k in range(2):
-        put(A, m + k, get(A, k))
-        put(B, m + k, get(B, k))
-        put(C, m + k, get(C, k))
-    return is_edge & ((is_edge >> 1) | (is_edge << (m - 1)))
-
-
-@inline
-def _is_clear(C: Any, A: Any, B: Any, m: int, i: int, stars: Stars, du: float, dv: float) -> bool:
-    """Whether a place is inside all edges of a star, by more than rounding."""
-    for k in range(m):
-        if stars.around[i, k] < 0:
-            a, b, c = get(A, k), get(B, k), get(C, k)
-            if a * du + b * dv > c - 1e-9 * abs(c) - 1e-12 * (a * a + b * b):
-                return False
-    return True
-
-
-@inner
-def _move_by_lines(
-    U: Any, V: Any, A: Any, B: Any, C: Any, m: int, i: int, dots: Dots, border: Border,
-    field: Field, over: float, moves: Moves, stars: Stars, out: F8,
-) -> bool:  # fmt: skip
-    """Move a dot at a convex compartment's border by its star; False if that does not hold."""
-    x, y = dots.x[i], dots.y[i]
-    pairs = _lines_of_star(A, B, C, m, i, dots, border, stars)
-    if corners_of_lines(A, B, C, m, U, V):
-        return False
-    if pairs != 0:
-        for k in range(m):
-            if (pairs >> k) & 1:
-                e = -1 - stars.around[i, k]
-                u, v = border.edge[e, 2] - x, border.edge[e, 3] - y
-                put(U, k, u)
-                put(V, k, v)
-                if k == 0:
-                    put(U, m, u)
-                    put(V, m, v)
-    if backward_sides(A, B, m, U, V):
-        return False
-    area, du, dv = moments_of(U, V, m)
-    area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
-    if len(field.sums):
-        outline_of_lanes(U, V, m, out)
-        area, du, dv = sum_field(out, m, x, y, field)
-    if area > 0.0:
-        du, dv = du / area, dv / area
-        if not _is_clear(C, A, B, m, i, stars, du, dv):
-            return False
-        share = over
-        for k in range(m if over != 1.0 else 0):
-            if over * (get(A, k) * du + get(B, k) * dv) > get(C, k):
-                share = 1.0
-        du, dv = share * du, share * dv
-        if share > 1.0 and not _is_clear(C, A, B, m, i, stars, du, dv):
-            return False
-    else:
-        du = dv = 0.0
-    if dots.fixed[i]:
-        du = dv = 0.0
-    moves.x[i], moves.y[i] = x + du, y + dv
-    moves.gone[i] = math.sqrt(du * du + dv * dv)
-    return True
 
 
 @inner

@@ -150,10 +150,11 @@ def _relax(
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
             n_star = ZERO
-            if is_rim and grid.whole[c, 5] == 1 and len(spacing.table) == 0:
+            if is_rim and len(spacing.table) == 0:
                 n_star = _star_at_border(N, S, m, is_packed, n, grid.whole[c, 4], pads)
             if n_star >= 3:
-                moves.kind[i] = KEPT
+                has_holes = n > 0 and pads.out[n - 1, 5] != 0.0
+                moves.kind[i] = RIM if has_holes else KEPT
                 _keep_star(S, n_star, i, stars)
             else:
                 _keep_star(N, m if is_packed else ZERO, i, stars)
@@ -364,14 +365,16 @@ def _is_in_cell(N: Any, m: int, dots: Dots, spot: Spot, over: float, du: float, 
 def _star_at_border(
     N: Any, S: Any, m: int, is_packed: bool, n: int, first_edge: int, pads: Pads
 ) -> int:
-    """Put what lies beyond a cell's sides into S; return how many, 0 if it cannot be kept."""
+    """Put what lies beyond a cell's outer ring into S; return how many, 0 if it cannot be kept."""
     out, count = pads.out, ZERO
     if n == 0 and not is_packed:
         return int(ZERO)
     for s in range(n if n > 0 else m):
         if n > 0:
             j = int(out[s, 4])
-            if out[s, 5] != 0.0 or j == NOWHERE:
+            if out[s, 5] != 0.0:
+                break
+            if j == NOWHERE:
                 return int(ZERO)
             if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
                 continue

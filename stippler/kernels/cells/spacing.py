@@ -4,10 +4,10 @@
 *level* evens out the masses of neighbouring cells. Each wants nothing once it is met, so dots come
 to rest in a packing without rows. Lloyd's steps never stop wanting and end in crystals.
 
-The rules know what a clipped cell knows: its corners, its sides and the dots beyond. What the other
-dots want (`Spacing.wants`: mass, dots per area, radius) is that of the step before, so a step
-passes over the cells once. Where the ink in a cell is uneven its dot belongs in the midst of the
-ink, and goes there instead (`Spacing.rule`, see `stippler.stippling.spacing`).
+The rules know what a clipped cell knows: its corners, its sides and the dots beyond. What the
+other dots want (`Spacing.wants`: mass, distance of neighbours, radius) is that of the step before,
+so a step passes over the cells once. Where the ink in a cell is uneven its dot belongs in the midst
+of the ink, and goes there instead (`Spacing.rule`, see `stippler.stippling.spacing`).
 
 Push and pull: Ahmed, Guo, Yan, Franceschi, Zhang, Deussen 2017; level: Balzer, Schloemer, Deussen
 2009; de Goes, Breeden, Ostromoukhov, Desbrun 2012.
@@ -28,25 +28,29 @@ NEAR, BASE, SLOPE, CAP, HOLE, NARROW, LEVEL, PULL, GAIN, LOW, LEAST, SCALE = ran
 WIDE, WIDEST = 0.85, 1.05
 """Diameters of dots, in hexagonal spacings, between which holes get narrower."""
 
-MASS, PER_AREA, RADIUS = 0, 1, 2
+MASS, NEIGHBOUR, RADIUS = 0, 1, 2
 """Columns of `Spacing.wants` and `Spacing.found`."""
 
 HEXAGONAL = 2.0 / math.sqrt(3.0)
 """Squared neighbour distance of the hexagonal grid with one dot a unit of area."""
 
 _FAR = 1e-30
+_FARTHER = 1.6  # a neighbour's own spacing counts for no more than so much of a dot's
 
 
 @inline
 def ask(spacing: Spacing, i: int, c: int, area: float, mass: float) -> None:
-    """Note what the dot of row i wants: how many dots its cell asks for, how dense, how large."""
+    """Note what the dot of row i wants: how many dots its cell asks for, how far apart, how large.
+
+    The distance is that of neighbours in the hexagonal grid of the density.
+    """
     table = spacing.table
     per_area, radius = table[0, 0], table[0, 1]
     if len(table) > 1:
         at = min(max(mass / max(area, _FAR) * spacing.rule[SCALE], 0.0), len(table) - 1.0)
         k = min(int(at), len(table) - 2)
         t = at - k
-        per_area += table[k, 0] - table[0, 0] + t * (table[k + 1, 0] - table[k, 0])
+        per_area = table[k, 0] + t * (table[k + 1, 0] - table[k, 0])
         radius = table[k, 1] + t * (table[k + 1, 1] - table[k, 1])
     if len(spacing.radius):
         own = spacing.radius[i]
@@ -54,32 +58,28 @@ def ask(spacing: Spacing, i: int, c: int, area: float, mass: float) -> None:
         radius = own
     per_area *= spacing.unit[c]
     spacing.found[i, MASS] = area * per_area
-    spacing.found[i, PER_AREA] = per_area
+    spacing.found[i, NEIGHBOUR] = math.sqrt(HEXAGONAL / max(per_area, _FAR))
     spacing.found[i, RADIUS] = radius
 
 
 @inline
-def _by_side(
-    rule: F8, d2: float, a: float, b: float, length: float, mu: float, mv: float, more: float,
-    per_area: float, radii: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Return push and level across a side with middle (mu, mv) from a dot at (a, b), d2 away."""
-    d = math.sqrt(d2)
-    h = math.sqrt(HEXAGONAL / per_area)
+def _push(rule: F8, d2: float, h: float, radii: float) -> float:
+    """Return by how much of the distance, whose square is d2, dots are pushed apart."""
     wanted = min(max(rule[NEAR] * h, rule[BASE] * h + rule[SLOPE] * radii), rule[CAP] * h)
-    push = 0.5 * max(wanted - d, 0.0) / d
-    level = rule[LEVEL] * more * length / d
-    return level * mu - push * a, level * mv - push * b
+    if d2 >= wanted * wanted:
+        return 0.0
+    return float(0.5 * (wanted / math.sqrt(d2) - 1.0))
 
 
 @inline
-def _by_corner(rule: F8, u: float, v: float, per_area: float, radius: float) -> float:
+def _pull(rule: F8, u: float, v: float, h: float, radius: float) -> float:
     """Return how much of the way to a corner pull goes."""
-    r = math.sqrt(u * u + v * v)
-    h = math.sqrt(HEXAGONAL / per_area)
-    wide = min(max(2.0 * radius / h - WIDE, 0.0), WIDEST - WIDE)
-    largest = (rule[HOLE] - rule[NARROW] * wide) * h * (1.0 / math.sqrt(3.0))
-    return float(rule[PULL] * max(r - largest, 0.0) / max(r, _FAR))
+    wide = min(max(2.0 * radius - WIDE * h, 0.0), (WIDEST - WIDE) * h)
+    largest = (rule[HOLE] * h - rule[NARROW] * wide) * (1.0 / math.sqrt(3.0))
+    r2 = u * u + v * v
+    if r2 <= largest * largest:
+        return 0.0
+    return float(rule[PULL] * (1.0 - largest / math.sqrt(r2)))
 
 
 @inner
@@ -89,36 +89,40 @@ def rules_in_lanes(
 ) -> tuple[float, float]:  # fmt: skip
     """Return the move that the rules want of a dot whose cell lies in lanes, no border near.
 
-    The number of the dot beyond side k is ``N[first + k]``.
+    The number of the dot beyond side k is ``N[first + k]``. A side of length L between dots d
+    apart has ``L d = a e_v - b e_u``, with (a, b) the way to the dot beyond.
     """
     rule, wants = spacing.rule, spacing.wants
-    own, e, radius = wants[i, MASS], wants[i, PER_AREA], wants[i, RADIUS]
+    own, h, radius = wants[i, MASS], wants[i, NEIGHBOUR], wants[i, RADIUS]
+    most = _FARTHER * h
     du = dv = 0.0
     j = get(N, first + m - 1)
-    before = wants[j, PER_AREA] if j >= 0 else e
+    before = min(wants[j, NEIGHBOUR], most) if j >= 0 else h
+    u, v = get(U, 0), get(V, 0)
     for k in range(m):
         j = get(N, first + k)
-        u, v = get(U, k), get(V, k)
         n = k + 1 if k + 1 < m else 0
         u1, v1 = get(U, n), get(V, n)
         eu, ev = u1 - u, v1 - v
-        length = math.sqrt(eu * eu + ev * ev)
-        more, there, r = 0.0, e, radius
+        there = h
         if j >= 0:
+            there = min(wants[j, NEIGHBOUR], most)
             a, b = dots.x[j] - x, dots.y[j] - y
-            more, there, r = wants[j, MASS] - own, wants[j, PER_AREA], wants[j, RADIUS]
+            d2 = max(a * a + b * b, _FAR)
+            push = _push(rule, d2, 0.5 * (h + there), radius + wants[j, RADIUS])
+            level = rule[LEVEL] * (wants[j, MASS] - own) * (a * ev - b * eu) / d2
+            du += level * 0.5 * (u + u1) - push * a
+            dv += level * 0.5 * (v + v1) - push * b
         else:
-            t = 2.0 * (u * ev - v * eu) / max(length * length, _FAR)
+            t = 2.0 * (u * ev - v * eu) / max(eu * eu + ev * ev, _FAR)
             a, b = t * ev, -t * eu
-        d2 = max(a * a + b * b, _FAR)
-        su, sv = _by_side(
-            rule, d2, a, b, length, 0.5 * (u + u1), 0.5 * (v + v1), more,
-            max(0.5 * (e + there), _FAR), radius + r,
-        )  # fmt: skip
-        t = _by_corner(rule, u, v, max((e + before + there) / 3.0, _FAR), radius)
-        du += su + t * u
-        dv += sv + t * v
-        before = there
+            push = _push(rule, max(a * a + b * b, _FAR), h, 2.0 * radius)
+            du -= push * a
+            dv -= push * b
+        t = _pull(rule, u, v, (h + before + there) * (1.0 / 3.0), radius)
+        du += t * u
+        dv += t * v
+        before, u, v = there, u1, v1
     return du, dv
 
 
@@ -132,41 +136,35 @@ def rules_at_border(
     corner.
     """
     rule, wants = spacing.rule, spacing.wants
-    own, e, radius = wants[i, MASS], wants[i, PER_AREA], wants[i, RADIUS]
+    own, h, radius = wants[i, MASS], wants[i, NEIGHBOUR], wants[i, RADIUS]
     du = dv = 0.0
     near2, near_u, near_v, far2, far_u, far_v = math.inf, 0.0, 0.0, 0.0, 0.0, 0.0
     for s in range(n):
         u, v, u1, v1 = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
         eu, ev = u1 - u, v1 - v
-        length2 = eu * eu + ev * ev
         if out[s, 4] < 0.0:
-            t = min(max(-(u * eu + v * ev) / max(length2, _FAR), 0.0), 1.0)
+            t = -(u * eu + v * ev) / max(eu * eu + ev * ev, _FAR)
+            t = min(max(t, 0.0), 1.0)
             a, b = u + t * eu, v + t * ev
             if a * a + b * b < near2:
                 near2, near_u, near_v = a * a + b * b, a, b
             if u * u + v * v > far2:
                 far2, far_u, far_v = u * u + v * v, u, v
             continue
-        mu, mv = 0.5 * (u + u1), 0.5 * (v + v1)
         j = int(out[s, 4])
-        there = wants[j, PER_AREA]
+        mean = 0.5 * (h + min(wants[j, NEIGHBOUR], _FARTHER * h))
         a, b = dots.x[j] - x, dots.y[j] - y
-        mean = max(0.5 * (e + there), _FAR)
-        su, sv = _by_side(
-            rule, max(a * a + b * b, _FAR), a, b, math.sqrt(length2), mu, mv,
-            wants[j, MASS] - own, mean, radius + wants[j, RADIUS],
-        )  # fmt: skip
-        t0, t1 = _by_corner(rule, u, v, mean, radius), _by_corner(rule, u1, v1, mean, radius)
-        du += su + 0.5 * (t0 * u + t1 * u1)
-        dv += sv + 0.5 * (t0 * v + t1 * v1)
-    e = max(e, _FAR)
+        d2 = max(a * a + b * b, _FAR)
+        push = _push(rule, d2, mean, radius + wants[j, RADIUS])
+        level = rule[LEVEL] * (wants[j, MASS] - own) * (a * ev - b * eu) / d2
+        t0, t1 = _pull(rule, u, v, mean, radius), _pull(rule, u1, v1, mean, radius)
+        du += level * 0.5 * (u + u1) - push * a + 0.5 * (t0 * u + t1 * u1)
+        dv += level * 0.5 * (v + v1) - push * b + 0.5 * (t0 * v + t1 * v1)
     if 0.0 < near2 < math.inf:
-        su, sv = _by_side(
-            rule, 4.0 * near2, 2.0 * near_u, 2.0 * near_v, 0.0, 0.0, 0.0, 0.0, e, 2.0 * radius
-        )
-        t = _by_corner(rule, far_u, far_v, e, radius)
-        du += su + t * far_u
-        dv += sv + t * far_v
+        push = _push(rule, 4.0 * near2, h, 2.0 * radius)
+        t = _pull(rule, far_u, far_v, h, radius)
+        du += t * far_u - push * 2.0 * near_u
+        dv += t * far_v - push * 2.0 * near_v
     return du, dv
 
 
@@ -181,12 +179,14 @@ def blend(
 
     (ink_u, ink_v) is the centroid of the cell's ink, (mid_u, mid_v) that of the cell.
     """
-    rule, e = spacing.rule, max(spacing.wants[i, PER_AREA], _FAR)
-    s = math.sqrt(min(area, 1.0 / e))
-    length = math.sqrt(du * du + dv * dv)
-    if length > 0.5 * s:
-        du *= 0.5 * s / length
-        dv *= 0.5 * s / length
-    off = math.hypot(ink_u - mid_u, ink_v - mid_v)
+    rule, h = spacing.rule, spacing.wants[i, NEIGHBOUR]
+    s = math.sqrt(min(area, h * h * (1.0 / HEXAGONAL)))
+    length2 = du * du + dv * dv
+    if length2 > 0.25 * s * s:
+        shorter = 0.5 * s / math.sqrt(length2)
+        du *= shorter
+        dv *= shorter
+    au, av = ink_u - mid_u, ink_v - mid_v
+    off = math.sqrt(au * au + av * av)
     w = min(max(rule[GAIN] * off / max(s, _FAR) - rule[LOW], rule[LEAST]), 1.0)
     return (1.0 - w) * du + w * ink_u, (1.0 - w) * dv + w * ink_v

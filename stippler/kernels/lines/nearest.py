@@ -58,43 +58,57 @@ def _distance(x, y, ax, ay, bx, by):
 
 
 @inline
-def _nearest(x, y, segments, x0, y0, cell, columns, rows, start, listed):
+def _nearest(x, y, segments, x0, y0, cell, columns, rows, start, listed, inverse, widest):
     """Return the segment whose edge is nearest, the place along it, and how far its edge is."""
-    best, place, found = 1e300, 0.0, -1
+    best, within, place, found = 1e300, 1e300, 0.0, -1
     i, j = math.floor((x - x0) / cell), math.floor((y - y0) / cell)
     if i >= 0 and j >= 0 and i < columns and j < rows:
         c = j * columns + i
         for slot in range(start[c], start[c + 1]):
             k = listed[slot]
-            ax, ay = segments[k, 0], segments[k, 1]
-            bx, by = segments[k, 2], segments[k, 3]
-            t = _foot(x, y, ax, ay, bx, by)
-            d = math.hypot(x - ax - t * (bx - ax), y - ay - t * (by - ay))
-            d -= segments[k, 4] + t * (segments[k, 5] - segments[k, 4])
+            px, py = x - segments[k, 0], y - segments[k, 1]
+            dx, dy = segments[k, 2] - segments[k, 0], segments[k, 3] - segments[k, 1]
+            t = min(max((px * dx + py * dy) * inverse[k], 0.0), 1.0)
+            ex, ey = px - t * dx, py - t * dy
+            d = ex * ex + ey * ey
+            if d > within:
+                continue
+            d = math.sqrt(d) - segments[k, 4] - t * (segments[k, 5] - segments[k, 4])
             if d < best:
                 best, place, found = d, t, k
+                within = max(d + widest, 0.0)
+                within *= within
     return found, place, best
 
 
 @kernel
 def find_nearest(
-    begin, stop, points, segments, x0, y0, cell, columns, rows, start, listed, which, along, away
-) -> None:
+    begin, stop, points, segments, x0, y0, cell, columns, rows, start, listed, inverse, widest,
+    which, along, away, feet,
+) -> None:  # fmt: skip
     """Find for each point the nearest segment within reach.
 
     Parameters
     ----------
-    which, along, away : (n,) int64, float64, float64
-        Are filled: the segment or -1, the arc length there, the distance to the line's edge.
+    inverse : (m,) float64
+        Of the segments' squared lengths.
+    widest : float
+        The largest half width.
+    which, along, away, feet : (n,) int64, float64, float64, (n, 2) float64
+        Are filled: the segment or -1, the arc length there, the distance to the line's edge, and
+        the nearest place on its axis.
     """
     for k in range(begin, stop):
         found, t, d = _nearest(
-            points[k, 0], points[k, 1], segments, x0, y0, cell, columns, rows, start, listed
-        )
+            points[k, 0], points[k, 1], segments, x0, y0, cell, columns, rows, start, listed,
+            inverse, widest,
+        )  # fmt: skip
         which[k], away[k] = found, d
         along[k] = 0.0
         if found >= 0:
             along[k] = segments[found, 6] + t * (segments[found, 7] - segments[found, 6])
+            feet[k, 0] = segments[found, 0] + t * (segments[found, 2] - segments[found, 0])
+            feet[k, 1] = segments[found, 1] + t * (segments[found, 3] - segments[found, 1])
 
 
 @kernel

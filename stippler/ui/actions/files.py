@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Key
+from stippler.editor.print_check import PrintCheck
 from stippler.stippling.plan import Plan
 from stippler.ui.actions.parts import Parts
 from stippler.ui.preferences import TONES
@@ -18,14 +19,24 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     def has_dots() -> bool:
         return session.n_dots > 0
 
+    def is_open() -> bool:
+        return session.document is not None
+
     yield Command("file.new", "New page", popups.new_page.ask, (Key("n", CTRL),))
-    yield Command("file.open", "Open a picture", filing.ask_picture, (Key("o", CTRL),))
+    yield Command("file.open", "Open", filing.ask_picture, (Key("o", CTRL),))
     yield Command("file.forget", "Forget recent pictures", filing.forget_recent,
                   can=lambda: bool(filing.recent()))  # fmt: skip
-    yield Command("file.export", "Export the drawing", filing.export, (Key("s", CTRL),),
+    yield Command("file.save", "Save", filing.save, (Key("s", CTRL),), can=is_open)
+    yield Command("file.save_as", "Save as", filing.save_as, (Key("s", CTRL_SHIFT),), can=is_open)
+    yield Command(
+        "file.save_copy", "Save a copy", lambda: filing.save_as(is_copy=True), can=is_open
+    )
+    yield Command("file.revert", "Revert to the file", filing.revert,
+                  can=lambda: session.exports.file is not None)  # fmt: skip
+    yield Command("file.recover", "Recover lost drawings", popups.recovery.ask)
+    yield Command("file.export_as", "Export", filing.export_as, (Key("e", CTRL),), can=has_dots)
+    yield Command("file.export", "Export again", filing.export, (Key("e", CTRL_SHIFT),),
                   can=has_dots)  # fmt: skip
-    yield Command("file.export_as", "Export to another file", filing.export_as,
-                  (Key("s", CTRL_SHIFT), Key("e", CTRL)), can=has_dots)  # fmt: skip
     yield Command("file.quit", "Quit", filing.quit, (Key("q", CTRL),))
 
 
@@ -71,6 +82,19 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),),
                   can=lambda: session.paintable and session.n_dots > 0)  # fmt: skip
     yield Command("work.reset", "Values as at first", reset)
+    yield from _print_commands(parts)
+
+
+def _print_commands(parts: Parts) -> Iterator[Command]:
+    session = parts.session
+    check = PrintCheck(session, parts.painting, parts.view)
+
+    def has_dots() -> bool:
+        return session.paintable and session.n_dots > 0
+
+    yield Command("work.check_print", "Next fault that print would spoil", check.show_next,
+                  can=has_dots)  # fmt: skip
+    yield Command("work.repair_print", "Repair for print", check.repair, can=has_dots)
 
 
 def help_commands(parts: Parts) -> Iterator[Command]:

@@ -12,8 +12,9 @@ from stippler.ui.widgets import Widgets
 
 _RECENT_AFTER = "file.open"
 _RULED = {
-    "file.export", "file.quit", "edit.preferences", "selection.delete", "selection.fix",
-    "selection.relax", "work.relax", "work.reset", "tool.larger", "view.theme", "panel.reset",
+    "file.save", "file.export_as", "file.quit", "edit.preferences", "selection.delete",
+    "selection.fix", "selection.relax", "work.relax", "work.reset", "tool.larger", "view.theme",
+    "panel.reset",
 }  # fmt: skip
 """Commands that a line stands above."""
 

@@ -43,7 +43,7 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
     imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Export",
-        f"{commands['file.export_as'].hint}: SVG, PNG or CSV.",
+        f"{commands['file.export_as'].hint}: for print, screens, plotters and other programs.",
         icon=ICON_SAVE,
         width=width,
         enabled=session.n_dots > 0,

@@ -15,7 +15,8 @@ from imgui_bundle import portable_file_dialogs as native
 from stippler.names import shown
 from stippler.ui.widgets import Widgets
 
-PICTURES = (
+OPENED = (
+    ".stipple", ".csv",
     ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".bmp", ".gif", ".jp2", ".heic", ".heif",
     ".avif",
 )  # fmt: skip
@@ -95,32 +96,48 @@ class Dialogs:
         if self.is_open:
             return
         if self._use_native:
-            patterns = " ".join(f"*{ending}" for ending in PICTURES)
-            asked = native.open_file("Open a picture", str(folder), ["Pictures", patterns])
+            patterns = " ".join(f"*{ending}" for ending in OPENED)
+            asked = native.open_file(
+                "Open a picture or a drawing", str(folder), ["Pictures and drawings", patterns]
+            )
             self._native = _Native(asked, take)
         else:
-            self._own = _Own("Open a picture", "Open", f"{folder}/", PICTURES, take)
+            self._own = _Own("Open a picture or a drawing", "Open", f"{folder}/", OPENED, take)
 
     def ask_export(
         self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]
     ) -> None:
         """Ask where to write the drawing; a file that is there is not replaced unasked."""
+        self._ask_output("Export the drawing", "Export", path, endings, take)
+
+    def _ask_output(
+        self,
+        title: str,
+        verb: str,
+        path: Path,
+        endings: tuple[str, ...],
+        take: Callable[[Path], None],
+    ) -> None:
         if self.is_open:
             return
         if self._use_native:
             patterns = " ".join(f"*{ending}" for ending in endings)
             asked = native.save_file(
-                "Export the drawing", str(path), ["Drawings", patterns], native.opt.force_overwrite
+                title, str(path), ["Drawings", patterns], native.opt.force_overwrite
             )
             self._native = _Native(asked, lambda chosen: self._checked(chosen, take))
         else:
             self._own = _Own(
-                "Export the drawing",
-                "Export",
+                title,
+                verb,
                 str(path),
                 endings,
                 lambda chosen: self._checked(chosen, take),
             )
+
+    def ask_save(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
+        """Ask where to save the drawing; a file that is there is not replaced unasked."""
+        self._ask_output("Save the drawing", "Save", path, endings, take)
 
     def dismiss(self) -> None:
         """Close our own dialog without an answer; the system's is the person's to close."""

@@ -1,4 +1,4 @@
-"""What a person does with files: open, export, begin anew, leave."""
+"""What a person does with files: open, save, export, begin anew, leave."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stippler.editor.commands import Command
+from stippler.editor.exports import SAVED
 from stippler.editor.messages import WARNING
 from stippler.editor.session import Session
 from stippler.names import shown
@@ -35,8 +36,8 @@ class Filing:
         self, session: Session, dialogs: Dialogs, kept: Preferences, end: Callable[[], None]
     ) -> None:
         self._session, self._dialogs, self._kept, self._end = session, dialogs, kept, end
-        self.guard = Guard(session, self.export_as, lambda: dialogs.is_open)
-        self._noted: Source | None = None
+        self.guard = Guard(session, self.save, lambda: dialogs.is_open)
+        self._noted: Path | None = None
 
     # --- opening ------------------------------------------------------------------------------
 
@@ -47,8 +48,11 @@ class Filing:
         self._dialogs.ask_picture(folder, self.open)
 
     def open(self, path: Path) -> None:
-        """Open a picture."""
-        self.guard.then(f"Opening {shown(path.name)}", lambda: self._session.open(path))
+        """Open a picture or a drawing."""
+        from stippler.opening import is_drawing
+
+        opener = self._session.open_drawing if is_drawing(path) else self._session.open
+        self.guard.then(f"Opening {shown(path.name)}", lambda: opener(path))
 
     def open_recent(self, path: Path) -> None:
         """Open a picture of the list; one that is gone is taken off it."""
@@ -90,13 +94,14 @@ class Filing:
 
     def note_opened(self) -> bool:
         """Put the open picture on the list of recent ones; return whether the list is new."""
-        source = self._session.source
-        if source is self._noted:
+        source, file = self._session.source, self._session.exports.file
+        path = file or (source.path if source else None)
+        if path == self._noted:
             return False
-        self._noted = source
-        if source is None or source.path.resolve().is_relative_to(assets().resolve()):
+        self._noted = path
+        if path is None or path.resolve().is_relative_to(assets().resolve()):
             return False
-        self._kept.note_opened(source.path)
+        self._kept.note_opened(path)
         return True
 
     # --- beginning anew -----------------------------------------------------------------------
@@ -118,6 +123,43 @@ class Filing:
             self._dialogs.dismiss()
         self.guard.then("Quitting", self._end, leaving=True)
 
+    # --- saving -------------------------------------------------------------------------------
+
+    def save(self) -> None:
+        """Save the drawing in its file, or ask for one.
+
+        A file that another program has changed meanwhile is replaced only if asked for again.
+        """
+        session, exports = self._session, self._session.exports
+        if exports.file is None:
+            self.save_as()
+        elif exports.is_changed_on_disk:
+            exports.allow_replacing()
+            session.messages.say(
+                f"{shown(exports.file.name)} was changed by another program; save again to replace "
+                "it, or save under another name",
+                WARNING,
+            )
+        else:
+            session.save(exports.file)
+
+    def save_as(self, *, is_copy: bool = False) -> None:
+        """Ask where to save the drawing, and save it."""
+        session = self._session
+        if session.document is None:
+            session.save(Path())  # says why there is nothing to save
+            return
+        first = session.exports.file or _first_path(session.source).with_suffix(SAVED)
+        if is_copy:
+            first = first.with_stem(f"{first.stem} copy")
+        self._dialogs.ask_save(first, (SAVED,), lambda path: session.save(path, is_copy=is_copy))
+
+    def revert(self) -> None:
+        """Open the drawing as it was last saved."""
+        file = self._session.exports.file
+        if file is not None:
+            self.guard.then("Going back to the file", lambda: self._session.open_drawing(file))
+
     # --- exporting ----------------------------------------------------------------------------
 
     def export(self) -> None:
@@ -138,7 +180,7 @@ class Filing:
 
         self._dialogs.ask_export(
             session.exports.path or _first_path(session.source),
-            ENDINGS,
+            tuple(ending for ending in ENDINGS if ending != SAVED),
             lambda path: session.export(path, EXPORT_DPI),
         )
 

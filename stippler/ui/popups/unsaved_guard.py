@@ -12,7 +12,7 @@ from stippler.editor.session import Session
 from stippler.ui.popups.file_dialogs import POPUP, center
 from stippler.ui.widgets import Widgets
 
-_ASK, _WAIT = "Export your changes first?", "A file is being written"
+_ASK, _WAIT = "Save your changes first?", "A file is being written"
 _WIDTH = 440.0
 
 
@@ -122,7 +122,7 @@ class Guard:
         cancelled = widgets.button("Cancel", "Leaves everything as it is (Esc).", width=width)
         imgui.same_line(0.0, gap)
         exported = widgets.button(
-            "Export…", "Asks for a file, then goes on.", width=width, primary=True
+            "Save", "Saves the drawing, then goes on.", width=width, primary=True
         )
         return discarded, cancelled or widgets.escaped(), exported or widgets.entered()
 

@@ -1,0 +1,149 @@
+"""Rows in one grey, and what *Relax all* does to tone: ``python -m benchmarks.grain``.
+
+Ten thousand dots of a light, a middle and a dark grey, the mean of some seeds; what stands in
+docs/quality.md.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import box
+
+from benchmarks.figures import Figure
+from benchmarks.quality import read_darkness
+from benchmarks.scorer import measure
+from stippler.analysis.grain import measure_grain
+from stippler.analysis.spectrum import measure_spectrum
+from stippler.analysis.tone_error import measure_tone
+from stippler.drawing.reference import Reference
+from stippler.resources import assets
+from stippler.stippling.plan import Plan
+from stippler.stippling.relax import Relaxation
+from stippler.stippling.relax_all import relaxed_all
+from stippler.stippling.stipple import stages
+
+GREYS = {"light": 0.15, "middle": 0.4, "dark": 0.73}
+SIDE = 1000
+DOTS = 10_000
+
+_PROMISED = {
+    "rows_at_4": (0.006, 0.003),
+    "rows_at_8": (0.004, 0.002),
+    "least_distance": (0.77, 0.84),
+    "distance_cv": (0.042, 0.020),
+    "largest_hole": (1.27, 1.20),
+    "clouds": (0.0012, 0.0003),
+    "peak": (2.8, 2.4),
+    "direction, dB": (0.2, 0.1),
+}
+_HIGHER = ("least_distance",)
+
+
+def figures(quick: bool = False) -> list[Figure]:
+    """Measure greys of even spacing beside Lloyd's, rest, *Relax all*, and a step's time."""
+    seeds = range(1, 3 if quick else 9)
+    results = []
+    for spacing in ("even", "lloyd"):
+        for name, darkness in GREYS.items():
+            found = [_grey(darkness, spacing, seed) for seed in seeds]
+            for key in found[0]:
+                promised = _PROMISED.get(key, (None, None)) if spacing == "even" else (None, None)
+                if key == "overlap" and name == "dark" and spacing == "even":
+                    promised = (0.006, 0.002)
+                value = float(np.mean([row[key] for row in found]))
+                label = f"{name} grey, {spacing}: {key}"
+                results.append(Figure(label, value, "", *promised, key in _HIGHER))  # type: ignore[call-arg]
+    results += _after_many_steps()
+    results += _relax_all(1 if quick else 10)
+    results.append(_step_against_lloyd(3 if quick else 9))
+    return results
+
+
+def _grey(darkness: float, spacing: str, seed: int) -> dict[str, float]:
+    reference = Reference(np.full((SIDE, SIDE), darkness, np.float32), float(SIDE))
+    plan = Plan(n_dots=DOTS, spacing=spacing, seed=seed)
+    *_, last = stages(reference, plan, snapshots=False)
+    points, radii = np.array(last.position_mm), last.radius_mm.astype(np.float64)
+    grain = measure_grain(points)
+    spectrum = measure_spectrum(points, (0.0, 0.0, float(SIDE), float(SIDE)))
+    scored = measure(points, radii, np.asarray(reference.darkness, np.float64))
+    return {
+        "rows_at_4": grain.rows_at_4,
+        "rows_at_8": grain.rows_at_8,
+        "least_distance": grain.least_distance,
+        "distance_cv": grain.distance_cv,
+        "largest_hole": grain.largest_hole,
+        "clouds": grain.clouds,
+        "peak": spectrum.peak,
+        "direction, dB": spectrum.direction_db,
+        "overlap": scored["overlap"],
+        "tone_rmse": scored["tone_rmse"],
+        "detail_rmse": scored["detail_rmse"],
+    }
+
+
+def _after_many_steps(n: int = 10_000, steps: int = 320) -> list[Figure]:
+    side = 100.0
+    xy = np.random.default_rng(1).random((n, 2)) * side
+    engine = Relaxation(xy, box(0, 0, side, side), method="even")
+    largest = 0.0
+    for _ in range(steps):
+        largest = engine.step().largest_mm
+    rows = measure_grain(engine.points).rows_at_4
+    spacing = side / n**0.5
+    return [
+        Figure(f"rows_at_4 after {steps} steps from chance", rows, "", 0.008, 0.005),
+        Figure(f"largest move after {steps} steps", largest / spacing, "spacings", 0.005, 0.0005),
+    ]
+
+
+def _relax_all(presses: int) -> list[Figure]:
+    darkness = read_darkness(assets() / "samples" / "honey-bee.jpg", 800)
+    reference = Reference(darkness.astype(np.float32), 148.0)
+    *_, last = stages(reference, Plan(n_dots=20_000), snapshots=False)
+    points, radii = np.array(last.position_mm), np.array(last.radius_mm)
+    n, page = len(points), np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
+    page *= [reference.width_mm, reference.height_mm]
+
+    def error(points: NDArray[np.float64], radii: NDArray[np.float32]) -> float:
+        px = darkness.shape[1] / reference.width_mm
+        return measure_tone(points * px, radii.astype(np.float64) * px, darkness).tone_rmse
+
+    before, results = error(points, radii), []
+    for k in range(presses):
+        run = relaxed_all(
+            points, radii, [page], np.zeros(n, np.bool_), np.zeros(n, np.int32), reference, 20
+        )
+        for moved, sizes in run:
+            points, radii = np.array(moved), radii if sizes is None else sizes
+        if k in (0, presses - 1):
+            name = f"bee, 20,000: tone error after {k + 1} Relax all, over that before"
+            results.append(Figure(name, error(points, radii) / before, "", 1.0, 0.9))
+    return results
+
+
+def _step_against_lloyd(repeats: int) -> Figure:
+    """Time steps of both in turn, once dots hardly move; the least of several runs."""
+    xy = np.random.default_rng(0).random((50_000, 2))
+    engines = [Relaxation(xy, box(0, 0, 1, 1), method=m) for m in ("lloyd", "even")]
+    for engine in engines:
+        for _ in range(20):
+            engine.step()
+    times = np.empty((2 * repeats, 2))
+    for row in times:
+        for k, engine in enumerate(engines):
+            start = time.perf_counter()
+            engine.step()
+            row[k] = time.perf_counter() - start
+    lloyd, even = times.min(axis=0)
+    note = f"{1e3 * even:.1f} and {1e3 * lloyd:.1f} ms"
+    return Figure("a step of 50k, over a Lloyd step", even / lloyd, "", 1.3, 1.0, note=note)
+
+
+if __name__ == "__main__":
+    from benchmarks.all import main
+
+    raise SystemExit(main(only="grain"))

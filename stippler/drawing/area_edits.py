@@ -1,0 +1,142 @@
+"""Edits of a document's areas: borders, outlines and the dots that change hands, in one step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from stippler.drawing import records
+from stippler.drawing.area import Area
+from stippler.drawing.document import Document
+from stippler.drawing.drawing import Drawing
+from stippler.drawing.planar.edits import Outcome, touched
+from stippler.drawing.planar.planar_map import Arc, PlanarMap
+from stippler.drawing.planar.swept import dots_in_strip
+
+_COLOURS = (
+    "#c65d57", "#5d86c6", "#6aa86a", "#c9a24b", "#8d6bb3", "#4fa3a0", "#b3708f", "#7d8a4f",
+)  # fmt: skip
+
+
+def map_of(drawing: Drawing) -> PlanarMap:
+    """Return the areas of a drawing as faces over its borders.
+
+    A drawing whose areas were made without borders gets them: its areas are laid over each other
+    in their order.
+    """
+    borders: Mapping[int, Arc] = drawing.table(records.BORDER)
+    next_area = drawing.first_free(records.AREA)
+    if borders:
+        return PlanarMap(dict(borders), drawing.first_free(records.BORDER), next_area)
+    made = PlanarMap.of_page(drawing.page.width_mm, drawing.page.height_mm)
+    return _with_outlines(made, drawing, next_area)
+
+
+def _with_outlines(made: PlanarMap, drawing: Drawing, next_area: int) -> PlanarMap:
+    from stippler.drawing.planar.borders import paths_of
+    from stippler.drawing.planar.edits import EVEN_ODD, add
+
+    for k, outline in drawing.outlines().items():
+        if k and not outline.is_empty:
+            ready = PlanarMap(made.arcs, made.next_arc, k)
+            made = add(ready, paths_of(outline), rule=EVEN_ODD).map
+    return PlanarMap(made.arcs, made.next_arc, next_area)
+
+
+def edit_areas(
+    document: Document, label: str, edit: Callable[[PlanarMap], Outcome], style: int | None = None
+) -> Outcome:
+    """Edit areas as one step of the history.
+
+    Parameters
+    ----------
+    edit : callable
+        From the map before to what one of the edits in `planar` makes of it.
+    style : int, optional
+        Of new areas; else that of the area they were taken from, the page's.
+
+    Raises
+    ------
+    GeometryError
+        If the edit is refused; then nothing has changed.
+
+    Notes
+    -----
+    Dots change hands where borders swept over them, and nowhere else.
+    """
+    before = current_map(document)
+    outcome = edit(before)
+    after = outcome.map
+    document.begin(label)
+    try:
+        _set_borders(document, after)
+        _set_areas(document, before, outcome, style)
+        _hand_over(document, before, after)
+    except BaseException:
+        document.cancel()
+        raise
+    document.commit()
+    _last[document] = after
+    return outcome
+
+
+_last: WeakKeyDictionary[Document, PlanarMap] = WeakKeyDictionary()
+
+
+def current_map(document: Document) -> PlanarMap:
+    """Return the areas of a document as a map; the same one until they change."""
+    known = _last.get(document)
+    drawing = document.drawing
+    borders: Mapping[int, Arc] = drawing.table(records.BORDER)
+    if known is not None and len(borders) == len(known.arcs):
+        fresh = known.next_area == drawing.first_free(records.AREA)
+        if fresh and all(borders.get(k) is arc for k, arc in known.arcs.items()):
+            return known
+    _last[document] = made = map_of(drawing)
+    return made
+
+
+def _set_borders(document: Document, after: PlanarMap) -> None:
+    old: Mapping[int, Arc] = document.drawing.table(records.BORDER)
+    for k in [k for k in old if k not in after.arcs]:
+        document.set(records.BORDER, k, None)
+    for k, arc in after.arcs.items():
+        if old.get(k) is not arc:
+            document.set(records.BORDER, k, arc)
+    document.drawing.next_id[records.BORDER] = after.next_arc
+
+
+def _set_areas(document: Document, before: PlanarMap, outcome: Outcome, style: int | None) -> None:
+    areas: dict[int, Area] = document.drawing.table(records.AREA)
+    for k in sorted(touched(before, outcome.map) | set(outcome.made)):
+        if k in outcome.gone:
+            continue
+        outline = outcome.map.outline(k)
+        if k in areas:
+            document.set(records.AREA, k, replace(areas[k], outline_mm=outline))
+        else:
+            own = areas[0].style if style is None else style
+            made = Area(f"area {k}", outline, own, _COLOURS[k % len(_COLOURS)])
+            document.set(records.AREA, k, made)
+    for k in outcome.gone:
+        if k in areas:
+            document.set(records.AREA, k, None)
+    document.drawing.next_id[records.AREA] = max(
+        outcome.map.next_area, document.drawing.first_free(records.AREA)
+    )
+
+
+def _hand_over(document: Document, before: PlanarMap, after: PlanarMap) -> None:
+    dots = document.dots
+    which, area = dots_in_strip(before, after, dots.position_mm, dots.area)
+    kept = area >= 0
+    if kept.any():
+        document.change("area", which[kept], area[kept].astype(np.int32))
+
+
+def held_areas(drawing: Drawing) -> list[int]:
+    """Return the areas that are locked, and so give nothing away."""
+    return [k for k, area in drawing.areas.items() if area.locked]
