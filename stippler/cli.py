@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 _INTERRUPTED = 130
-COMMANDS = ("edit", "render", "stats", "check", "calibrate", "bench", "info")
+COMMANDS = ("edit", "render", "scale", "stats", "check", "calibrate", "bench", "info")
 
 app = typer.Typer(
     add_completion=False,
@@ -272,6 +272,27 @@ def _write_again(
     drawing = open_drawing(file)
     drawing.inputs = (file,)
     drawing.save(output, form=form, **exports)
+    stops.written = True
+
+
+@app.command()
+def scale(
+    file: Annotated[Path, typer.Argument(help="A drawing (.stipple, .csv).")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="File to write, by its ending.")],
+    by: Annotated[float, typer.Option(help="Size in percent.")] = 100.0,
+    dots: Annotated[int | None, typer.Option(help="Number of dots; else as the size asks.")] = None,
+    least_radius: Annotated[
+        float, typer.Option(help="No dot is smaller than this radius, in mm.")
+    ] = 0.0,
+    seed: Seed = 1,
+) -> None:
+    """Scale a drawing to another size or number of dots, keeping its tone."""
+    from stippler.api import open as open_drawing
+    from stippler.stippling.scale import Scaling, scaled_drawing
+
+    drawing = scaled_drawing(open_drawing(file), Scaling(by / 100.0, dots, least_radius, seed))
+    drawing.inputs = (file,)
+    drawing.save(output)
     stops.written = True
 
 
