@@ -32,6 +32,7 @@ TOPICS = (
     "live",
     "files",
     "soak",
+    "areas",
 )
 
 

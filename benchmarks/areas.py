@@ -1,93 +1,106 @@
-"""Settled dots in many areas, against one square: ``python -m benchmarks.areas [--quick]``.
-
-A square's dots are relaxed first; then they are divided among areas, relaxed until they settle
-again, and timed step by step in turn, so that other work on the machine falls on all alike.
-"""
+"""Figures of areas, deformations, lines and scale."""
 
 from __future__ import annotations
 
-import sys
+import itertools
 import time
+from collections.abc import Callable
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
-from shapely.geometry import MultiPoint, Polygon, box
 
 from benchmarks.figures import Figure
-from stippler.stippling.relax import Relaxation
+from stippler.drawing.deformation import Cage, Deformation
+from stippler.drawing.dots import Dots
+from stippler.drawing.line import ADHERE, Line
+from stippler.drawing.pattern import Pattern
+from stippler.drawing.planar import edits, moves
+from stippler.drawing.planar.path import Path
+from stippler.drawing.planar.planar_map import OUTSIDE, Arc, PlanarMap
+from stippler.drawing.planar.swept import dots_in_strip
+from stippler.stippling.lines import adhere, adhering
+from stippler.stippling.patterns import builtin
+from stippler.stippling.scale import Scaling, scaled_dots
 
-N = 50_000
-_BEFORE, _SETTLING = 12, 15
-
-
-def subdivision(n: int, seed: int = 0) -> list[Polygon]:
-    """Cut the unit square into n convex areas with corners all along their sides."""
-    square = box(0, 0, 1, 1)
-    seeds = MultiPoint(np.random.default_rng(seed).random((n, 2)))
-    cells = shapely.get_parts(shapely.voronoi_polygons(seeds, extend_to=square))
-    cells = shapely.intersection(cells, square)
-    return [shapely.segmentize(cell, 1 / np.sqrt(n) / 8) for cell in cells if cell.area > 0]
-
-
-def wavy(n_side: int) -> list[Polygon]:
-    """Return n² areas with wavy outlines of 60 edges."""
-    a = np.arange(60) * 2 * np.pi / 60
-    out = []
-    for i in range(n_side):
-        for j in range(n_side):
-            r = (0.8 + 0.2 * np.sin((3 + (i + j) % 4) * a)) / (2 * n_side)
-            middle = (np.array([i, j]) + 0.5) / n_side
-            out.append(Polygon(middle + np.c_[r * np.cos(a), r * np.sin(a)]))
-    return out
+SIZE = (200.0, 150.0)
 
 
-def _points_in(areas: list[Polygon], n: int) -> NDArray[np.float64]:
-    found = []
-    for k, area in enumerate(areas):
-        x0, y0, x1, y1 = area.bounds
-        xy = np.random.default_rng(k).random((3 * n, 2)) * [x1 - x0, y1 - y0] + [x0, y0]
-        found.append(xy[shapely.contains_xy(area, xy[:, 0], xy[:, 1])][:n])
-    return np.concatenate(found)
+def figures(*, quick: bool = False) -> list[Figure]:
+    """Measure all; the best of several, since other work disturbs."""
+    repeats = 5 if quick else 30
+    rng = np.random.default_rng(1)
+    areas = three_hundred_areas(rng)
+    dots = rng.random((200_000, 2)) * SIZE
+    owner = areas.area_at(dots)
+    arc = next(k for k, a in areas.arcs.items() if OUTSIDE not in (a.left, a.right))
 
+    def edit() -> None:
+        after = moves.move_by(areas, [(arc, 6)], (0.3, 0.2)).map
+        for k in edits.touched(areas, after):
+            after.outline(k)
+        dots_in_strip(areas, after, dots, owner)
 
-def figures(quick: bool = False) -> list[Figure]:
-    """Measure a settled step of all engines in turn."""
-    first = Relaxation(np.random.default_rng(0).random((N, 2)), box(0, 0, 1, 1))
-    first.run(_BEFORE)
-    xy = first.points
-    waves = wavy(14)
-    engines = [
-        Relaxation(xy, box(0, 0, 1, 1)),
-        Relaxation(xy, subdivision(200)),
-        Relaxation(xy, subdivision(2200)),
-        Relaxation(_points_in(waves, N // len(waves)), waves),
-    ]
-    for engine in engines:
-        engine.run(_SETTLING)
-    least = [np.inf] * len(engines)
-    for _ in range(8 if quick else 30):
-        for k, engine in enumerate(engines):
-            start = time.perf_counter()
-            engine.step()
-            least[k] = min(least[k], (time.perf_counter() - start) / len(engine))
-    names = (
-        ("50k in 200 convex areas, settled step", 1.5, 1.25),
-        ("50k in 2,200 convex polygons, settled step", 2.5, 1.6),
-        ("50k in 196 wavy areas, settled step", None, None),
-    )
-    note = "of one square's"
+    cage = Cage.over((0.0, 0.0, *SIZE)).moved({5: (60.0, 45.0)})
+    bent = Deformation(cage=cage)
+    pattern = Pattern(1, builtin("hexagons"), 8, 8, bent)
+    lines = adhering(curves(500, rng))
+    loose = rng.random((20_000, 2)) * 100
+    n = 60_000
+    flat = Dots.round(rng.random((n, 2)) * 100, 0.1)
+    page = {0: shapely.box(0, 0, 100, 100)}
     return [
-        Figure(name, seconds / least[0], "times", reach, stretch, note=note)
-        for (name, reach, stretch), seconds in zip(names, least[1:], strict=True)
-    ]
+        Figure("one border of 300 areas moved, 200k dots", best_ms(edit, repeats), "ms", 30, 5),
+        Figure("cage over 5,120 polygons", best_ms(pattern.rings_mm, repeats), "ms", 16),
+        Figure("cage over 200k dots", best_ms(lambda: bent.apply(dots), repeats), "ms", 8),
+        Figure("20k dots adhere to 500 curves", best_ms(lambda: adhere(lines, loose), repeats),
+               "ms", 10),
+        Figure("level of detail, 60k to 15k dots",
+               best_ms(lambda: scaled_dots(flat, page, Scaling(n_dots=15_000)), 3) / 1e3, "s", 1),
+    ]  # fmt: skip
 
 
-def main() -> None:
-    """Print a line for each figure."""
-    for figure in figures("--quick" in sys.argv):
-        print(f"{figure.name:46} {figure.value:6.2f} {figure.unit} {figure.note}")
+def best_ms(call: Callable[[], object], repeats: int) -> float:
+    """Return the shortest wall time of some calls, after one uncounted."""
+    call()
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - start)
+    return 1e3 * min(times)
 
 
-if __name__ == "__main__":
-    main()
+def three_hundred_areas(rng: np.random.Generator) -> PlanarMap:
+    """Return 300 cells with borders of 10,000 edges that wind."""
+    page = shapely.box(0, 0, *SIZE)
+    seeds = rng.random((300, 2)) * SIZE
+    cells = []
+    for _ in range(3):
+        found = shapely.voronoi_polygons(shapely.multipoints(seeds), extend_to=page)
+        cells = [cell.intersection(page) for cell in found.geoms]
+        seeds = np.array([cell.centroid.coords[0] for cell in cells])
+    areas = PlanarMap.of_page(*SIZE)
+    for cell in cells[:-1]:
+        ring = Path.polyline(shapely.get_coordinates(cell.exterior), closed=True)
+        areas = edits.add(areas, ring, edits.IS_CUT).map
+    t = np.linspace(0, 1, 13)[1:-1, None]
+    wound: dict[int, Arc | None] = {}
+    for k, arc in areas.arcs.items():
+        if OUTSIDE in (arc.left, arc.right):
+            continue
+        at = arc.path.points_mm
+        parts = [at[:1]]
+        for p, q in itertools.pairwise(at):
+            d = q - p
+            across = np.array([-d[1], d[0]]) * 0.04 * np.sin(2 * np.pi * t)
+            parts += [p + d * t + across, q[None]]
+        wound[k] = Arc(Path.polyline(np.concatenate(parts)), arc.left, arc.right)
+    return areas.with_arcs(wound)
+
+
+def curves(n: int, rng: np.random.Generator) -> list[Line]:
+    """Return smooth curves of about 20 mm."""
+    starts = rng.random((n, 2)) * 90
+    walks = [s + np.cumsum(rng.normal(0, 3, (6, 2)), axis=0) for s in starts]
+    paths = [moves.smooth_path(Path.polyline(at)) for at in walks]
+    return [Line(f"curve {k}", path, meeting=ADHERE) for k, path in enumerate(paths)]
