@@ -13,7 +13,7 @@ from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_c
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.spacing import MASS, NEIGHBOUR
+from stippler.kernels.cells.spacing import LEAST, MASS, NEIGHBOUR
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
@@ -87,7 +87,7 @@ class Cells:
         self._free_of_dot = np.zeros(n)
         self._has_stars = False
         self.n_failed = n  # stars of the step before that did not hold
-        self.rules = LLOYD
+        self.rules, self._is_measured = LLOYD, True
 
     def space_by(self, wanted: Wanted, radius_mm: Floats | None = None) -> None:
         """Move dots by the rules of even spacing from now on; what is wanted goes by the field.
@@ -101,14 +101,25 @@ class Cells:
             np.empty(0) if radius_mm is None else np.asarray(radius_mm, np.float64)[self.order],
             Rules().array(wanted.scale),
         )  # fmt: skip
-        self._relax(np.arange(n, dtype=np.int32), False, self._new_moves())
-        found = self.rules.found
-        mass = np.bincount(self.compartment_of_dot, found[:, MASS], minlength=n_parts)
-        count = np.bincount(self.compartment_of_dot, minlength=n_parts)
+        self._is_measured = False
+
+    def _measure_wants(self) -> None:
+        """Find what dots want before the first step that asks for it; Lloyd's asks for nothing."""
+        if self._is_measured or self.rules.rule[LEAST] >= 1.0:
+            return
+        self._relax(np.arange(self.n, dtype=np.int32), False, self._new_moves())
+        self._fit_wants_to_number()
+        self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
+
+    def _fit_wants_to_number(self) -> None:
+        """Scale what is found so that all dots of a compartment want as many as there are."""
+        n_parts, owner, found = len(self.parts), self.compartment_of_dot, self.rules.found
+        mass = np.bincount(owner, found[:, MASS], minlength=n_parts)
+        count = np.bincount(owner, minlength=n_parts)
         unit = np.divide(count, mass, out=np.ones(n_parts), where=mass > 0)
-        found[:, MASS] *= unit[self.compartment_of_dot]
-        found[:, NEIGHBOUR] /= np.sqrt(unit[self.compartment_of_dot])
-        self.rules = self.rules._replace(unit=unit, wants=found, found=self.rules.wants)
+        found[:, MASS] *= unit[owner]
+        found[:, NEIGHBOUR] /= np.sqrt(unit[owner])
+        self.rules, self._is_measured = self.rules._replace(unit=unit), True
 
     def set_rules(self, rules: Rules) -> None:
         """Change how strictly dots are spaced."""
@@ -129,6 +140,7 @@ class Cells:
 
     def step(self, cancel: Question = None, redirect: Redirect | None = None) -> Floats | None:
         """Move every free dot once; return how far each row went, or None if cancelled."""
+        self._measure_wants()
         new = self._new_moves()
         done = self.keeps_stars and self._step_from_stars(new, cancel)
         if not done:
@@ -140,6 +152,8 @@ class Cells:
         if redirect is not None:
             self._redirect(new, redirect)
         self.xs, self.ys = new.x, new.y
+        if not self._is_measured:
+            self._fit_wants_to_number()
         self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
         if self.n:
             self._slack += float(new.gone.max())

@@ -18,6 +18,7 @@ from stippler.drawing.reference import Reference
 from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
+from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
 from stippler.stippling.plan import MAX_DOTS
 from stippler.stippling.tone import DotRule, rule_for
@@ -26,9 +27,12 @@ _BLEED = 3.0  # mean spacings
 _LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
 _MIN_DOTS = 500  # below this a bleed is not worth it
 _PIXELS_PER_DOT = 60  # blocks of a reference that is finer are averaged
-_MIN_PIXELS = 2_500_000
+_MIN_PIXELS, _MIN_PIXELS_AT_EDGE = 600_000, 2_500_000
+_INKED_EDGE = 0.1  # mean darkness from which on the picture runs to the page's edge
+_LEVELS = 65_535
 _DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
 _MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
+_FARTHEST = 2.0  # radii beyond the edge from which a dot is drawn back to it, at most
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
 
 
@@ -47,6 +51,8 @@ class PageRaster:
     pixel_mm : float
     size_mm : (float, float)
         Of the page.
+    divided : int
+        Pixels a side that each pixel of the picture was divided into.
     """
 
     darkness: NDArray[np.float32]
@@ -54,6 +60,7 @@ class PageRaster:
     rule: DotRule
     pixel_mm: float
     size_mm: tuple[float, float]
+    divided: int = 1
 
     @classmethod
     def of(
@@ -90,13 +97,27 @@ class PageRaster:
             rule = rule_for(darkness, n_dots, None, border, faintest=faintest)
         elif share < 1.0:
             rule = replace(rule, thin=share * rule.thin)
-        return cls(darkness, bleed, rule, pixel_mm, (width, height))
+        return cls(darkness, bleed, rule, pixel_mm, (width, height), max(1, round(1.0 / scale)))
 
     def density(self) -> NDArray[np.float32]:
         """Dots per square pixel, bleed included; white stays exactly 0."""
-        levels = np.linspace(0.0, 1.0, 4097)
-        table = self.rule.density(levels)
-        return self.with_bleed(np.interp(self.darkness, levels, table).astype(np.float32))
+        darkest = float(self.darkness.max()) or 1.0
+        table = self.rule.density(np.linspace(0.0, darkest, _LEVELS + 1)).astype(np.float32)
+        level = np.ceil(self.darkness * np.float32(_LEVELS / darkest))
+        level = np.minimum(level, np.float32(_LEVELS)).astype(np.uint16)
+        return self.with_bleed(table[level])
+
+    def ink_field(self) -> DensityField:
+        """Return the darkness as a weight of the page, bleed included, in mm.
+
+        A picture whose pixels were divided for its dots is taken as it came: it weighs the same.
+        """
+        k = self.divided
+        values, bleed = self.darkness[::k, ::k], -(-self.bleed // k)
+        if bleed:
+            values = np.pad(values, bleed, mode="symmetric")
+        pixel_mm = k * self.pixel_mm
+        return DensityField(values, pixel_mm, (-bleed * pixel_mm, -bleed * pixel_mm))
 
     def with_bleed(self, field: NDArray[np.float32]) -> NDArray[np.float32]:
         """Repeat a field of the page in the bleed, mirrored."""
@@ -122,12 +143,17 @@ class PageRaster:
         beyond = np.flatnonzero(out > 0.0)
         depth = out[beyond] / self.radii(at[beyond])
         rank = np.argsort(depth, kind="stable")
-        n_kept = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH))
+        n_kept, n_over = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH)), 0
         if n_wanted is not None:
             room = n_wanted - (len(points) - len(beyond))
-            n_kept = min(max(room, n_kept // 2), int(np.searchsorted(depth[rank], 1.2)))
+            n_over = max(-room, 0)
+            n_kept = min(max(room, 0), int(np.searchsorted(depth[rank], _FARTHEST)))
         drop = np.zeros(len(points), bool)
         drop[beyond[rank[n_kept:]]] = True
+        if n_over:  # those of the page alone are too many: leave out the ones nearest to its edge
+            inner = np.flatnonzero(out == 0.0)
+            inwards = np.minimum(points[inner], size - points[inner]).min(axis=1)
+            drop[inner[np.argsort(inwards, kind="stable")[:n_over]]] = True
         kept: NDArray[np.float64] = at[~drop]
         return kept
 
@@ -222,7 +248,10 @@ def at_resolution(darkness: NDArray[np.float32], n_dots: int) -> tuple[NDArray[n
     if per_pixel > _DOTS_PER_PIXEL:
         k = math.ceil(math.sqrt(per_pixel / _DOTS_PER_PIXEL))
         return _frozen(np.repeat(np.repeat(darkness, k, 0), k, 1)), 1.0 / k
-    k = int(math.sqrt(darkness.size / max(_MIN_PIXELS, _PIXELS_PER_DOT * n_dots)))
+    # the ink along a trimmed edge is evened by pixels, and would be too light with few
+    runs_out = float(_border(darkness).mean()) > _INKED_EDGE
+    least = _MIN_PIXELS_AT_EDGE if runs_out else _MIN_PIXELS
+    k = int(math.sqrt(darkness.size / max(least, _PIXELS_PER_DOT * n_dots)))
     if k < 2:
         return darkness, 1.0
     rows, columns = np.arange(0, h, k), np.arange(0, w, k)

@@ -17,6 +17,8 @@ _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
 _BROKEN = 0.35  # of a spacing, by which first dots are moved so that no order is left to them
 
+_READ_LATER = np.empty((0, 2))
+
 Steps = Iterator[tuple[NDArray[np.float64], float]]
 
 
@@ -27,6 +29,7 @@ def relaxed(
     outline_mm: NDArray[np.float64],
     fixed: NDArray[np.bool_] | None = None,
     n_done: int = 0,
+    watched: bool = True,
 ) -> Steps:
     """Relax the dots of a raster by the steps that are left after `n_done`.
 
@@ -36,26 +39,29 @@ def relaxed(
     outline_mm : (4, 2) float64
         Of the page, or of all that has darkness.
     fixed : (n,) bool, optional
+    watched : bool
+        Whether somebody looks at the dots of each step; else only those of the last are read out.
 
     Yields
     ------
     points : (n, 2) float64, pixels
-        After each step.
+        After each step; none where they are not read out.
     movement_mm : float
         Their mean movement in it.
     """
     at = points * raster.pixel_mm
     if style.spacing == "even" and style.weighted:
-        yield from _evenly(raster, style, at, outline_mm, fixed, n_done)
+        yield from _evenly(raster, style, at, outline_mm, fixed, n_done, watched)
         return
     for n_steps, field in step_weights(raster, style, n_done):
         inside = np.clip(at, outline_mm[0], outline_mm[2])
         method = "lloyd" if style.spacing == "even" else style.spacing
         engine = Relaxation(inside, outline_mm, fixed, density=field, method=method)
-        for _ in range(n_steps):
+        for k in range(n_steps):
             report = engine.step()
-            at = np.asarray(engine.points)
-            yield at / raster.pixel_mm, float(report.mean_mm)
+            is_read = watched or k == n_steps - 1
+            at = np.asarray(engine.points) if is_read else at
+            yield at / raster.pixel_mm if is_read else _READ_LATER, float(report.mean_mm)
 
 
 def _evenly(
@@ -65,9 +71,9 @@ def _evenly(
     outline_mm: NDArray[np.float64],
     fixed: NDArray[np.bool_] | None,
     n_done: int,
+    watched: bool,
 ) -> Steps:
-    x, y = raster.outline_mm()[0]
-    field = DensityField(raster.with_bleed(raster.darkness), raster.pixel_mm, (float(x), float(y)))
+    field = raster.ink_field()
     if n_done == 0 and style.first_dots != "random":
         at = _with_order_broken(at, raster, style.seed, fixed)
     engine = Relaxation(
@@ -75,10 +81,13 @@ def _evenly(
         method="even", wanted=Wanted.by_rule(raster.rule, raster.pixel_mm),
     )  # fmt: skip
     sizes_follow = style.sizes == "tone" and raster.rule.varies
-    for rules in _schedule(style.iterations, sizes_follow)[n_done:]:
+    schedule = _schedule(style.iterations, sizes_follow)[n_done:]
+    for k, rules in enumerate(schedule, start=1):
         engine.set_rules(rules)
         report = engine.step()
-        yield np.asarray(engine.points) / raster.pixel_mm, float(report.mean_mm)
+        is_read = watched or k == len(schedule)
+        points = np.asarray(engine.points) / raster.pixel_mm if is_read else _READ_LATER
+        yield points, float(report.mean_mm)
 
 
 def _schedule(n_steps: int, sizes_follow: bool) -> list[Rules]:
@@ -132,5 +141,4 @@ def step_weights(
         yield n_first, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
     n_last = min(n_last, style.iterations - n_done)
     if n_last > 0:
-        weight = raster.with_bleed(raster.darkness)
-        yield n_last, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
+        yield n_last, raster.ink_field()

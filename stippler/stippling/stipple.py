@@ -95,9 +95,9 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         yield snapshot("first dots", round(1000 * share), 1000, points)
     if len(points) and plan.iterations:
         for k, (moved, movement_mm) in enumerate(
-            relaxed(raster, plan, points, raster.outline_mm())
+            relaxed(raster, plan, points, raster.outline_mm(), watched=snapshots)
         ):
-            points = moved
+            points = moved if len(moved) else points
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
     points = raster.trim(points, plan.n_asked)
     if plan.weighted and plan.iterations:
@@ -132,9 +132,9 @@ def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterat
         yield snapshot("first dots", round(1000 * share), 1000, points, radii)
     if len(points) and plan.iterations:
         for k, (moved, movement_mm) in enumerate(
-            relaxed(raster, plan, points, raster.outline_mm())
+            relaxed(raster, plan, points, raster.outline_mm(), watched=snapshots)
         ):
-            points = moved
+            points = moved if len(moved) else points
             yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
     points = raster.onto_ink(raster.trim(points, None))
     notes = shortfall(
