@@ -80,7 +80,9 @@ def _fields(session: Session, sight: Sight, frames: FrameRate) -> list[Field]:
     """Return what there is to tell, from the left; what matters least comes last."""
     at = sight.pointer_mm
     place = f"{at[0]:.1f}, {at[1]:.1f} mm" if at else "–"
-    dots = f"{session.n_dots:,} dots" + ("" if sight.dots_shown else ", hidden")
+    dots = f"{session.n_dots:,} dot{'s'[: session.n_dots != 1]}" + (
+        "" if sight.dots_shown else ", hidden"
+    )
     steps = f"{session.steps_per_s:.0f} steps/s" if session.steps_per_s else "–"
     rate = f"{frames.per_s:.0f} frames/s" if frames.per_s else "–"
     turned = _turned(sight.camera)

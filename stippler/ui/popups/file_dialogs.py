@@ -62,6 +62,8 @@ class _Own:
     text: str
     endings: tuple[str, ...]
     take: Callable[[Path], None]
+    writes: bool = False
+    problem: str = ""
     fresh: bool = True
     listed: tuple[Path, tuple[Path, ...]] | None = None
 
@@ -80,6 +82,7 @@ class Dialogs:
         self._native: _Native | None = None
         self._own: _Own | None = None
         self._confirm: tuple[Path, Callable[[Path], None]] | None = None
+        self._asked: _Own | None = None  # what the question whether to replace goes back to
 
     @property
     def waiting(self) -> bool:
@@ -133,6 +136,7 @@ class Dialogs:
                 str(path),
                 endings,
                 lambda chosen: self._checked(chosen, take),
+                writes=True,
             )
 
     def ask_save(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
@@ -171,22 +175,29 @@ class Dialogs:
             own.fresh = False
         imgui.set_next_item_width(-1.0)
         entered, own.text = imgui.input_text(
-            "##path", own.text, imgui.InputTextFlags_.enter_returns_true
+            "##path",
+            own.text,
+            imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all,
         )
         widgets.note("path")
         chosen = Path(own.text).expanduser() if entered and own.text.strip() else None
         chosen = _draw_list(widgets, own) or chosen
-        widgets.caption(f"Endings: {', '.join(own.endings)}")
+        widgets.caption(
+            own.problem or f"Endings: {', '.join(own.endings)}",
+            widgets.theme.alarm if own.problem else None,
+        )
         pressed, cancelled = _draw_verbs(widgets, own.verb)
         if pressed:
             chosen = Path(own.text).expanduser()
-        if cancelled or (chosen is not None and not chosen.is_dir()):
-            self._own = None
+        is_file = chosen is not None and not chosen.is_dir()
+        own.problem = _problem(own, chosen) if chosen is not None and is_file else own.problem
+        if cancelled or (is_file and not own.problem):
+            self._own, self._asked = None, own
             imgui.close_current_popup()
         imgui.end_popup()
         if chosen is not None and chosen.is_dir():
-            own.text, own.fresh = f"{chosen}/", True
-        elif chosen is not None and not cancelled:
+            own.text, own.fresh, own.problem = f"{chosen}/", True, ""
+        elif chosen is not None and not cancelled and not own.problem:
             own.take(chosen)
 
     def _draw_confirm(self, widgets: Widgets, path: Path, take: Callable[[Path], None]) -> None:
@@ -205,6 +216,18 @@ class Dialogs:
         imgui.end_popup()
         if replaced:
             take(path)
+        elif cancelled and self._asked is not None:
+            self._own, self._asked.fresh = self._asked, True
+
+
+def _problem(own: _Own, path: Path) -> str:
+    """Return why a path cannot be taken, so that it can be mended; nothing where it can."""
+    if own.writes and path.suffix.lower() not in own.endings:
+        ending = f"{path.suffix} is no ending" if path.suffix else "An ending is missing"
+        return f"{ending}; one of {', '.join(own.endings)}"
+    if own.writes:
+        return "" if path.parent.is_dir() else f"There is no folder {path.parent}"
+    return "" if path.is_file() else f"{path.name} is not there"
 
 
 def center(width: float) -> None:
