@@ -390,7 +390,7 @@ class Document:
             follower(entry)
 
     def _apply(self, edit: Edit) -> None:
-        rows = self._store.apply(edit.dots)
+        rows, edited = self._store.apply(edit.dots)
         for kind, i in edit.next_id.items():
             self.drawing.next_id[kind] = max(i, self.drawing.next_id.get(kind, 0))
         self._store.next_id = max(self._store.next_id, edit.next_id.get(records.DOT, 0))
@@ -399,10 +399,9 @@ class Document:
                 self.drawing.put(kind, i, after)
                 self._note_value(kind, i)
         if not edit.dots.is_empty:
-            there = self._store.rows(edit.dots.touched)
             changes = edit.dots.changes
             came = len(edit.dots.removed) or len(edit.dots.inserted)
-            self._note(rows, there[there >= 0], moved=bool("position_mm" in changes or came))
+            self._note(rows, edited, moved=bool("position_mm" in changes or came))
 
     def _note(self, rows: Rows, edited: Rows, *, moved: bool) -> None:
         """Take note of changed rows, and of the rows of the dots that a person changed."""

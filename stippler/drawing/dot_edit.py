@@ -114,12 +114,6 @@ class DotEdit:
         return not (self.changes or len(self.removed) or len(self.inserted))
 
     @property
-    def touched(self) -> Ids:
-        """The ids of all dots that it changes, removes or inserts; some may stand twice."""
-        ids = [change.ids for change in self.changes.values()]
-        return np.concatenate([*ids, self.removed.dots.id, self.inserted.dots.id])
-
-    @property
     def n_dots(self) -> int:
         """How many dots it concerns, at most."""
         changed = max((len(change.ids) for change in self.changes.values()), default=0)

@@ -392,9 +392,12 @@ def test_an_export_that_fails_says_why(stage: Stage, tmp_path: Path) -> None:
 
 
 def written(stage: Stage, path: Path) -> None:
-    """Let an export end well."""
+    """Let an export or a save, by the file's ending, end well."""
     n = len(stage.exporter.jobs)
-    stage.session.export(path, 300.0)
+    if path.suffix == ".stipple":
+        stage.session.save(path)
+    else:
+        stage.session.export(path, 300.0)
     stage.exporter.update = Update(n + 1, path, "finished", None, 1)
     stage.session.poll()
 
@@ -409,13 +412,15 @@ def erased(stage: Stage, *rows: int) -> None:
 
 def test_work_of_a_hand_is_unsaved_until_a_file_holds_it(stage: Stage, tmp_path: Path) -> None:
     opened(stage, 5)
-    session, path = stage.session, tmp_path / "out.csv"
+    session, path = stage.session, tmp_path / "out.stipple"
     assert not session.unsaved
     erased(stage, 0)
     assert session.unsaved
+    written(stage, tmp_path / "out.csv")
+    assert session.unsaved  # an export holds the dots alone
     written(stage, path)
     assert not session.unsaved
-    assert session.exports.path == path
+    assert session.exports.file == path
     session.undo()
     assert not session.unsaved  # nothing of a hand is in the drawing
     session.redo()
@@ -435,7 +440,7 @@ def test_a_relaxation_after_the_export_is_unsaved_only_with_a_hands_work(
     assert session.document.history.n_done == 1
     assert not session.unsaved
     erased(stage, 1)
-    written(stage, tmp_path / "out.csv")
+    written(stage, tmp_path / "out.stipple")
     assert not session.unsaved
     session.relax(1, weighted=True)
     assert session.unsaved  # the file's dots are not those that move now

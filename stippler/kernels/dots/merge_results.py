@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stippler.kernels.machine.jit import kernel
 
 F8 = NDArray[np.float64]
+I4 = NDArray[np.int32]
 I8 = NDArray[np.int64]
 
 
@@ -17,7 +18,7 @@ I8 = NDArray[np.int64]
 def merge_positions(
     rows: I8,
     result: F8,
-    edited: I8,
+    edited: I4,
     base: int,
     constraint: NDArray[np.int8],
     position: F8,
