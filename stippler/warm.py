@@ -65,6 +65,8 @@ def warm_levels(show: Callable[[str, int, int], None]) -> None:
     from stippler.kernels.machine.processor import level, levels
 
     known = levels()
+    if level() not in known:  # a processor that nobody has named a level for
+        return
     for name in known[known.index(level()) :]:
         subprocess.run(
             [sys.executable, "-m", "stippler.warm", "--into", str(store.packed_stores() / name)],
