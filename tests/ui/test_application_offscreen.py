@@ -214,7 +214,7 @@ def test_look_and_values_survive(start: Start) -> None:
     desk.host.click("Dark")
     desk.host.click("Scale")
     desk.host.key("escape")
-    desk.host.click("Perceptual")
+    desk.host.click("As in file")
     desk.host.fill("Width", "77")
     desk.app.editor.look.opacity = 0.8
     desk = start()
@@ -447,7 +447,7 @@ def test_another_drawing_asks_first(desk, picture: Path, tmp_path: Path) -> None
     desk.host.click("Cancel")
     desk.app.editor.show_panel(DRAWING)
     desk.host.settle()
-    desk.host.click("Perceptual")  # the picture would be read anew
+    desk.host.click("As in file")  # the picture would be read anew
     desk.host.click("Start")
     assert desk.host.shown("Discard")
     desk.host.click("Cancel")

@@ -106,7 +106,7 @@ def test_sizes_seed_method_and_tone_change_the_plan(desk) -> None:
     seed = session.plan.seed
     desk.host.click("Another seed")
     assert session.plan.seed != seed
-    desk.host.click("Perceptual")
+    desk.host.click("As in file")
     assert session.tone == "perceptual"
     desk.host.click("First dots")
     desk.host.key("down")

@@ -51,7 +51,7 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
         commands["file.export_as"].run()
     chosen = widgets.segments(
         "Tone",
-        ("Illustration", "Linear", "Perceptual"),
+        ("Drawn", "By light", "As in file"),
         _TONES.index(session.tone),
         _TONE_TIPS,
     )
