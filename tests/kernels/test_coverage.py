@@ -22,7 +22,7 @@ def frozen(field):
 
 def cells_of(points, darkness):
     order, start, frame = sorted_by_place(points, darkness, len(points))
-    cells = _Cells(len(points))
+    cells = _Cells(len(points), MAX_CORNERS)
     for _ in cells.build(points[order], start, frame, darkness):
         pass
     return cells, order

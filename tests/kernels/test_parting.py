@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial import KDTree
 
 from stippler.kernels.cells.close_pairs import find_close
+from stippler.kernels.tone.cell_ink import MAX_CORNERS
 from stippler.kernels.tone.radii import compare_sizes, even_sizes
 from stippler.stippling.radii import _Cells, sorted_by_place
 
@@ -45,7 +46,7 @@ def test_sizes_even_out_and_no_ink_is_lost():
     field = np.full((100, 100), 0.4, np.float32)
     field.flags.writeable = False
     order, cell_start, frame = sorted_by_place(points, field, len(points))
-    cells = _Cells(len(points))
+    cells = _Cells(len(points), MAX_CORNERS)
     list(cells.build(points[order], cell_start, frame, field))
     before = cells.asked.copy()
     cells.fit(0.1, 10.0)

@@ -31,8 +31,8 @@ from stippler.files.write.sizes import by_size
 from stippler.kernels.shapes import svg_text
 from stippler.kernels.shapes.number_text import number_rows
 
-MIN_DECIMALS = 2
-_FINE = 0.1  # of the smallest radius: a last decimal of so much puts nothing more than 5 % off
+MIN_DECIMALS = 3
+_FINE = 0.02  # of the smallest radius: a last decimal of so much puts nothing more than 1 % off
 TAP_MM = 0.01  # pen taps are lines of this length, which no plotter program drops
 
 SEGMENTS = ((ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
