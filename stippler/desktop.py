@@ -19,8 +19,8 @@ APP_ID = "stippler"
 """Also what windows call themselves, so that a desktop finds their icon."""
 
 _OPENED = (
-    "image/png", "image/jpeg", "image/tiff", "image/webp", "image/bmp", "image/gif", "image/jp2",
-    "image/heif", "image/heic", "image/avif",
+    "application/x-stipple", "image/png", "image/jpeg", "image/tiff", "image/webp", "image/bmp",
+    "image/gif", "image/jp2", "image/heif", "image/heic", "image/avif",
 )  # fmt: skip
 _REFRESH = (
     ("update-desktop-database", "applications"),

@@ -34,7 +34,7 @@ def test_entry_icon_and_kind(installed):
     assert entry["Exec"].endswith("edit %f")
     assert f"icons/hicolor/scalable/apps/{entry['Icon']}.svg" in installed
     assert entry["MimeType"].endswith(";")
-    assert "image/png" in entry["MimeType"].split(";")
+    assert {"image/png", "application/x-stipple"} <= set(entry["MimeType"].split(";"))
     for path in installed.values():
         if path.suffix != ".desktop":
             ET.parse(path)
