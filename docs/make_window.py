@@ -18,7 +18,7 @@ from PIL import ImageGrab
 
 ROOT = Path(__file__).resolve().parent.parent
 LENS_INPUT = ("click", "--repeat", "7", "--delay", "30", "4", "key", "z")
-CANVAS_LEFT, STATUS_HEIGHT = 342, 28
+CANVAS_LEFT, STATUS_HEIGHT = 366, 28
 CANVAS_TOP = 24
 EDITOR = "from stippler.start import main; main()"
 
@@ -42,7 +42,12 @@ def main() -> None:
     with os.fdopen(reads) as told:
         display = f":{told.readline().strip()}"
     settings = tempfile.TemporaryDirectory()  # the editor as it is at first
-    env = {**os.environ, "DISPLAY": display, "STIPPLER_CONFIG_DIR": settings.name}
+    env = {
+        **os.environ,
+        "DISPLAY": display,
+        "STIPPLER_CONFIG_DIR": settings.name,
+        "STIPPLER_STATE_DIR": settings.name,
+    }
     sample = ROOT / "assets" / "samples" / "ammonite.png"
     editor = subprocess.Popen(
         [sys.executable, "-c", EDITOR, str(sample), "--dots", chosen.dots],

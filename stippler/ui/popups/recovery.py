@@ -143,10 +143,8 @@ class RecoveryWindow:
     def _texture(self, entry: _Entry) -> moderngl.Texture | None:
         if entry.texture is None and entry.picture is not None:
             height, width = entry.picture.shape
-            entry.texture = self._ctx.texture(
-                (width, height), 1, entry.picture.tobytes(), alignment=1
-            )
-            entry.texture.swizzle = "RRR1"
+            pixels = entry.picture.repeat(3).tobytes()
+            entry.texture = self._ctx.texture((width, height), 3, pixels, alignment=1)
         return entry.texture
 
     def _let_go(self) -> None:
