@@ -69,7 +69,7 @@ def _display() -> Iterator[dict[str, str]]:
     try:
         with os.fdopen(reads) as told:
             env = {**os.environ, "DISPLAY": f":{told.readline().strip()}"}
-        env["STIPPLER_CONFIG_DIR"] = settings.name
+        env["STIPPLER_CONFIG_DIR"] = env["STIPPLER_STATE_DIR"] = settings.name
         env.pop("WAYLAND_DISPLAY", None)
         yield env
     finally:

@@ -5,6 +5,7 @@
 """
 
 import os
+import tempfile
 
 from hypothesis import settings
 
@@ -12,5 +13,6 @@ settings.register_profile("repeatable", derandomize=True, deadline=None, print_b
 settings.register_profile("free", deadline=None, print_blob=True)
 settings.register_profile("long", deadline=None, print_blob=True, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+os.environ["STIPPLER_STATE_DIR"] = tempfile.mkdtemp(prefix="stippler-state-")  # not a person's
 EXAMPLES = 10 if os.environ.get("HYPOTHESIS_PROFILE") == "long" else 1
 """Tests that set their own number of examples take so many times as many."""

@@ -92,6 +92,7 @@ class Desk:
         self._env.pop("WAYLAND_DISPLAY", None)
         self._env.pop("STIPPLER_SCALE", None)
         self._env["STIPPLER_CONFIG_DIR"] = str(settings)
+        self._env["STIPPLER_STATE_DIR"] = str(settings / "state")
         self.process = subprocess.Popen(
             [sys.executable, "-c", "from stippler.start import main; main()", *arguments],
             env=self._env,
