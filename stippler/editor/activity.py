@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
@@ -52,7 +53,7 @@ class Idle:
 
 
 @dataclass(slots=True)
-class Job:
+class Job(ABC):
     """A job runs, or is held.
 
     Attributes
@@ -71,13 +72,13 @@ class Job:
     total: int = field(default=0, kw_only=True)
     is_held: bool = field(default=False, kw_only=True)
 
+    @abstractmethod
     def take(self, desk: Desk, work: Work) -> Activity:
         """Take a result; return what goes on from there."""
-        raise NotImplementedError
 
+    @abstractmethod
     def end(self, desk: Desk, outcome: str) -> None:
         """Keep what there is, as a step of the history."""
-        raise NotImplementedError
 
     def _note(self, work: Work) -> None:
         self.stage, self.done, self.total = work.stage, work.done, work.total

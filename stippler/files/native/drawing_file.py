@@ -51,7 +51,7 @@ def save_drawing(drawing: Drawing, path: str | Path, more: Members | None = None
     Parameters
     ----------
     more : mapping of name to bytes, optional
-        Members beside the drawing's: how it was looked at, its history.
+        Members beside the drawing's.
 
     Raises
     ------
