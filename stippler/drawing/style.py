@@ -62,11 +62,11 @@ class Style:
     """
 
     n_dots: int | None = parameter(
-        Kind.WHOLE, None, "Number", "Number of dots; 20,000, or what --size-range asks for.",
+        Kind.WHOLE, None, "Number", "Number of dots; else as many as suit the page, or as the sizes ask for.",
         low=1, high=MAX_DOTS, may_lack=True, keyword="dots",
     )  # fmt: skip
     size_range_mm: tuple[float, float] | None = parameter(
-        Kind.RANGE, None, "Dot radius", "Dot radii in mm; 1:2, as large as --dots asks for.",
+        Kind.RANGE, None, "Dot radius", "Dot radii in mm; else 1:2, as large as the number of dots asks for.",
         low=0.0, unit="mm", may_lack=True, keyword="size_range",
     )  # fmt: skip
     iterations: int = parameter(
@@ -106,13 +106,6 @@ class Style:
         Kind.CHOICE, DEFAULT_PEN, "Pen", "Whose shapes the dots have.", choices=_PENS,
     )  # fmt: skip
     name: str = ""
-
-    @property
-    def n_asked(self) -> int | None:
-        """How many dots are asked for; None if that follows from the size range."""
-        if self.n_dots is None and self.size_range_mm is None:
-            return DEFAULT_DOTS
-        return self.n_dots
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""

@@ -45,10 +45,10 @@ def draw_dots(widgets: Widgets, session: Session) -> None:
 def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
     style, about = session.style, parameter_of("n_dots")
     follows = style.n_dots is None and style.size_range_mm is not None
-    shown = session.n_dots if follows else style.n_dots or DEFAULT_DOTS
+    shown = style.n_dots or session.n_dots or DEFAULT_DOTS
     imgui.begin_disabled(follows)
-    tip = "How many dots. " + ("Follows from the sizes now." if follows else "Met within 1 %.")
-    typed = widgets.number(about.label, shown, tip)
+    why = "Follows from the sizes now." if follows else "Unless given, as many as suit the page."
+    typed = widgets.number(about.label, shown, f"How many dots. {why}")
     imgui.end_disabled()
     if not follows and typed != shown:
         changes["n_dots"] = typed
@@ -68,7 +68,6 @@ def _draw_sizes(widgets: Widgets, session: Session, changes: dict[str, Any]) -> 
     if chosen == 0:
         if style.size_range_mm is not None:
             changes["size_range_mm"] = None
-            changes["n_dots"] = style.n_dots or DEFAULT_DOTS
         return
     about = parameter_of("size_range_mm")
     changes["size_range_mm"] = draw_range(widgets, about, style.size_range_mm or _USUAL_RANGE_MM)
