@@ -62,11 +62,11 @@ class Style:
     """
 
     n_dots: int | None = parameter(
-        Kind.WHOLE, None, "Number", "Number of dots; else as many as suit the page, or as the sizes ask for.",
+        Kind.WHOLE, None, "Number", "Number of dots; else as many as suit the page or the sizes.",
         low=1, high=MAX_DOTS, may_lack=True, keyword="dots",
     )  # fmt: skip
     size_range_mm: tuple[float, float] | None = parameter(
-        Kind.RANGE, None, "Dot radius", "Dot radii in mm; else 1:2, as large as the number of dots asks for.",
+        Kind.RANGE, None, "Dot radius", "Dot radii in mm; else 1:2, as the number asks for.",
         low=0.0, unit="mm", may_lack=True, keyword="size_range",
     )  # fmt: skip
     iterations: int = parameter(
