@@ -219,7 +219,8 @@ def pulse_density(
     plan = Plan(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
     reference = Reference(darkness, float(darkness.shape[1]))
     if area is not None:
-        return pulses_inside(reference.darkness, plan, area)
+        found = pulses_inside(reference, plan, area)
+        return found.position_mm, found.radius_mm
     raster = raster_for(reference, plan)
     *_, (_, points) = _first_dots(raster, plan)
     points = raster.onto_ink(raster.trim(points, None))
