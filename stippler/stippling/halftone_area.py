@@ -79,7 +79,7 @@ def pulses_inside(
     nothing = AreaDots(np.empty((0, 2)), np.empty(0), DotRule(1.0, 2.0))
     if part.area <= 0.0:
         return nothing
-    n_dots = plan.n_asked or _number_for(reference, plan.size_range_mm, part, curves)
+    n_dots = plan.n_dots or _number_for(reference, plan.size_range_mm, part, curves)
     cells = _cells_of(reference, part, n_dots, curves)
     inked = cells.darkness[cells.darkness > 0.0]
     if not inked.size:
@@ -91,7 +91,8 @@ def pulses_inside(
         )  # fmt: skip
     sizes, side = plan.size_range_mm, cells.side
     in_cells = None if sizes is None else (sizes[0] / side, sizes[1] / side)
-    rule = rule_for(inked[None, :], plan.n_asked, in_cells, inked[:0])
+    n_wanted = plan.n_dots if sizes is not None else n_dots
+    rule = rule_for(inked[None, :], n_wanted, in_cells, inked[:0])
     points = _grown(cells.darkness, rule, plan, float(inked.min()))
     x, y = points.astype(np.intp).T
     radii = rule.radius(cells.darkness[y, x])
