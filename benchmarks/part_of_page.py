@@ -7,9 +7,9 @@ import shapely
 
 from benchmarks.figures import Figure, median_s
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.stippling.halftone_area import pulses_inside
 from stippler.stippling.picture_field import PictureField
-from stippler.stippling.plan import Plan
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.spacing import TO_INK, Wanted
@@ -24,12 +24,12 @@ def figures(repeats: int) -> list[Figure]:
     turn = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
     reach = 11.0 + 2.0 * np.cos(5.0 * turn)
     area = shapely.Polygon(np.column_stack([np.cos(turn), np.sin(turn)]) * reach[:, None] + 100.0)
-    plan = Plan(n_dots=_N_DOTS)
-    first = pulses_inside(reference, plan, area)
+    style = Style(n_dots=_N_DOTS)
+    first = pulses_inside(reference, style, area)
     return [
         Figure(
             f"{_N_DOTS:,} dots in an area of 16 megapixels, first dots to sizes",
-            1e3 * median_s(lambda: _stippled(reference, plan, area), repeats), "ms", 150.0, 60.0,
+            1e3 * median_s(lambda: _stippled(reference, style, area), repeats), "ms", 150.0, 60.0,
         ),
         Figure(
             f"{_STEPS} weighted steps of them",
@@ -38,8 +38,8 @@ def figures(repeats: int) -> list[Figure]:
     ]  # fmt: skip
 
 
-def _stippled(reference: Reference, plan: Plan, area: shapely.Polygon) -> None:
-    first = pulses_inside(reference, plan, area)
+def _stippled(reference: Reference, style: Style, area: shapely.Polygon) -> None:
+    first = pulses_inside(reference, style, area)
     field = PictureField.of(reference)
     wanted = Wanted.by_rule(first.rule, 1.0)
     engine = Relaxation(first.position_mm, area, density=field, method="even", wanted=wanted)

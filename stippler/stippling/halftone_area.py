@@ -13,11 +13,11 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.levels import Curve
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.errors import GeometryError
 from stippler.kernels.halftone.scan_order import outside_polygon
 from stippler.stippling.compartments import polygon_of
 from stippler.stippling.halftone import CELLS_PER_DOT, grown, reach_for, whole_dots
-from stippler.stippling.plan import Plan
 from stippler.stippling.tone import DotRule, rule_for
 from stippler.stippling.window import Window
 
@@ -52,9 +52,9 @@ class _Cells(NamedTuple):
 
 
 def pulses_inside(
-    reference: Reference, plan: Plan, area: Polygon | MultiPolygon, *curves: Curve
+    reference: Reference, style: Style, area: Polygon | MultiPolygon, *curves: Curve
 ) -> AreaDots:
-    """Place as many dots as a plan asks for in an area of a page, at a cost that follows the area.
+    """Place as many dots as a style asks for in an area of a page, at a cost that follows the area.
 
     The cells are as fine as the area asks for, and the rule for size and density is that of the
     darkness within it, so the number is met exactly. Where only a range of sizes is asked for, the
@@ -63,7 +63,7 @@ def pulses_inside(
     Parameters
     ----------
     reference : Reference
-    plan : Plan
+    style : Style
     area : polygon, mm
     curves : callables
         What darkness goes through, as a style's tone curve.
@@ -79,7 +79,7 @@ def pulses_inside(
     nothing = AreaDots(np.empty((0, 2)), np.empty(0), DotRule(1.0, 2.0))
     if part.area <= 0.0:
         return nothing
-    n_dots = plan.n_dots or _number_for(reference, plan.size_range_mm, part, curves)
+    n_dots = style.n_dots or _number_for(reference, style.size_range_mm, part, curves)
     cells = _cells_of(reference, part, n_dots, curves)
     inked = cells.darkness[cells.darkness > 0.0]
     if not inked.size:
@@ -89,11 +89,11 @@ def pulses_inside(
             f"is too narrow for {n_dots} dots by pulse-density", "area",
             "ask for fewer, or fill it at random",
         )  # fmt: skip
-    sizes, side = plan.size_range_mm, cells.side
+    sizes, side = style.size_range_mm, cells.side
     in_cells = None if sizes is None else (sizes[0] / side, sizes[1] / side)
-    n_wanted = plan.n_dots if sizes is not None else n_dots
+    n_wanted = style.n_dots if sizes is not None else n_dots
     rule = rule_for(inked[None, :], n_wanted, in_cells, inked[:0])
-    points = _grown(cells.darkness, rule, plan, float(inked.min()))
+    points = _grown(cells.darkness, rule, style, float(inked.min()))
     x, y = points.astype(np.intp).T
     radii = rule.radius(cells.darkness[y, x])
     in_mm = replace(rule, radius_min=rule.radius_min * side, radius_max=rule.radius_max * side)
@@ -113,7 +113,7 @@ def _number_for(
 
 
 def _grown(
-    darkness: NDArray[np.float32], rule: DotRule, plan: Plan, lightest: float
+    darkness: NDArray[np.float32], rule: DotRule, style: Style, lightest: float
 ) -> NDArray[np.float64]:
     """Grow the dots of a rule; all lengths in cells."""
     levels = np.linspace(0.0, 1.0, 4097)
@@ -123,7 +123,7 @@ def _grown(
     charge *= np.float32(whole_dots(asked))
     spacing = math.sqrt(np.count_nonzero(charge) / max(asked, 1.0))
     reach = reach_for(float(rule.density(np.array([lightest]))[0]))
-    *_, (_, first) = grown(charge, asked, plan.growth, plan.start, plan.seed, reach, spacing)
+    *_, (_, first) = grown(charge, asked, style.growth, style.start, style.seed, reach, spacing)
     return first.position_px
 
 
