@@ -333,7 +333,7 @@ class Editor:
         draw_status(self.widgets, self.session, sight, self._rate)
 
     def _previewed(self) -> Preview | None:
-        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        """Return the change that is held in a panel, or that the brush or the style will make."""
         hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None
