@@ -11,7 +11,7 @@ semi-discrete transport (de Goes, Breeden, Ostromoukhov, Desbrun 2012; Kitagawa,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,17 @@ from numpy.typing import NDArray
 from scipy.ndimage import label
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
+from shapely import contains_xy
+from shapely.geometry import MultiPolygon, Polygon
+
+from stippler.stippling.compartments import Shape
 
 _CELL = 2.0  # mean spacings of the dots a side of the raster's cells
 _MOST_CELLS = 62_500
 _ROUNDS = 3
+_FEWEST = 100  # dots of an outline that can have long waves
+_BLOCK = 6.0  # mean spacings a side of the blocks that are counted
+_BY_CHANCE = 0.6  # of chance's unevenness, from which on dots are evened out
 _FARTHEST = 0.7  # of a cell, in each round
 _LEAK = 1e-9  # of the mean wanted: without it a part of the raster has no one solution
 _EMPTY = 1e-3  # of the mean wanted in a cell; a cell that wants less takes no part
@@ -96,6 +103,74 @@ def _binned(field: NDArray[np.float64], n_rows: int, n_columns: int) -> NDArray[
         edges = sums.take(below, axis) * (1.0 - part) + sums.take(below + 1, axis) * part
         field = np.diff(edges, axis=axis)
     return field
+
+
+def with_long_waves_gone(
+    position_mm: NDArray[np.float64],
+    outlines: Sequence[Shape | NDArray[np.float64]],
+    outline_of_dot: NDArray[np.integer],
+    held: NDArray[np.bool_],
+    wanted_at: Callable[[NDArray[np.float64]], NDArray[np.floating]] | None = None,
+) -> NDArray[np.float64]:
+    """Even out, each within its outline, dots that lie as unevenly over longer ways as by chance.
+
+    Dots that are even already are left alone, so that doing it again changes nothing.
+
+    Parameters
+    ----------
+    position_mm : (n, 2) float64
+    outlines : sequence of polygons or (m, 2) arrays, mm
+    outline_of_dot : (n,) int
+    held : (n,) bool
+        Dots that stay.
+    wanted_at : function of (m, 2) positions, optional
+        How dense dots are to be there, in any unit; without it as dense everywhere.
+
+    Returns
+    -------
+    (n, 2) float64
+    """
+    at = position_mm.copy()
+    for k, outline in enumerate(outlines):
+        shape = outline if isinstance(outline, (Polygon, MultiPolygon)) else Polygon(outline)
+        mine = np.flatnonzero(outline_of_dot == k)
+        if len(mine) < _FEWEST or held[mine].all():
+            continue
+        x0, y0, x1, y1 = shape.bounds
+        pixel = math.sqrt(shape.area / len(mine))
+        x = np.arange(x0 + 0.5 * pixel, x1 + 0.5 * pixel, pixel)
+        y = np.arange(y0 + 0.5 * pixel, y1 + 0.5 * pixel, pixel)
+        places = np.stack(np.meshgrid(x, y), axis=-1)
+        wanted = contains_xy(shape, places[..., 0], places[..., 1]).astype(np.float64)
+        if wanted_at is not None:
+            wanted *= wanted_at(places.reshape(-1, 2)).reshape(wanted.shape)
+        if _unevenness(at[mine], wanted, pixel, (x0, y0)) < _BY_CHANCE:
+            continue
+        moved = evened_out(at[mine], wanted, pixel, (x0, y0), held[mine])
+        inside = contains_xy(shape, moved[:, 0], moved[:, 1])
+        at[mine[inside]] = moved[inside]
+    return at
+
+
+def _unevenness(
+    points: NDArray[np.float64],
+    wanted: NDArray[np.float64],
+    pixel: float,
+    origin: tuple[float, float],
+) -> float:
+    """Return by how much blocks of about 36 dots miss what they want; 1 is what chance does."""
+    h, w = wanted.shape
+    rows, columns = max(1, round(h / _BLOCK)), max(1, round(w / _BLOCK))
+    mass = _binned(wanted, rows, columns)
+    if not mass.any():
+        return 0.0
+    mass *= len(points) / mass.sum()
+    row = np.clip((points[:, 1] - origin[1]) / (h * pixel) * rows, 0, rows - 1).astype(np.intp)
+    column = np.clip((points[:, 0] - origin[0]) / (w * pixel) * columns, 0, columns - 1)
+    found = np.bincount(row * columns + column.astype(np.intp), minlength=mass.size)
+    full = mass.ravel() > 0.5 * mass.max()
+    off = (found - mass.ravel())[full] / np.sqrt(mass.ravel()[full])
+    return float(np.sqrt(np.mean(np.square(off))))
 
 
 def _shared_out(mass: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from shapely import contains_xy
 from shapely.geometry import box
 
 from stippler.analysis.grain import measure_grain
+from stippler.drawing.reference import Reference
 from stippler.stippling.relax import Relaxation
-from stippler.stippling.transport import evened_out
+from stippler.stippling.relax_all import relaxed_all
+from stippler.stippling.transport import evened_out, with_long_waves_gone
 
 
 def off_by(points, wanted, pixel, cells=8):
@@ -80,6 +83,50 @@ def test_held_dots_stay_and_the_others_make_up_for_them():
     assert off_by(moved, np.ones((64, 64)), 60 / 64) < 0.6 * off_by(
         points, np.ones((64, 64)), 60 / 64
     )
+
+
+def relaxed(points, radii, outlines, owner, reference=None, steps=20):
+    fixed = np.zeros(len(points), np.bool_)
+    for moved, sizes in relaxed_all(points, radii, outlines, fixed, owner, reference, steps):
+        points, radii = np.array(moved), radii if sizes is None else sizes
+    return points, radii
+
+
+@pytest.mark.parametrize("darkness", [None, 0.4])
+def test_relaxing_all_evens_out_a_fill_by_chance(darkness):
+    points = np.random.default_rng(1).random((6_000, 2)) * 100.0
+    page = np.array([(0, 0), (100, 0), (100, 100), (0, 100)], np.float64)
+    reference = None
+    if darkness is not None:
+        reference = Reference(np.full((300, 300), darkness, np.float32), 100.0)
+    owner = np.zeros(len(points), np.int32)
+    moved, _ = relaxed(points, np.full(6_000, 0.3, np.float32), [page], owner, reference)
+    assert measure_grain(points).clouds > 0.5
+    assert measure_grain(moved).clouds < 0.0012
+
+
+def test_dots_that_are_even_are_left_to_relaxation():
+    page = np.array([(0, 0), (100, 0), (100, 100), (0, 100)], np.float64)
+    points = np.random.default_rng(1).random((3_000, 2)) * 100.0
+    owner, held = np.zeros(3_000, np.int32), np.zeros(3_000, np.bool_)
+    even, _ = relaxed(points, np.full(3_000, 0.3, np.float32), [page], owner)
+    assert np.array_equal(with_long_waves_gone(even, [page], owner, held), even)
+    assert not np.array_equal(with_long_waves_gone(points, [page], owner, held), points)
+
+
+def test_each_outline_keeps_its_dots():
+    """Two areas of unlike density beside each other, one with a hole."""
+    left = box(0, 0, 50, 60).difference(box(10, 10, 25, 25))
+    right = box(50, 0, 80, 60)
+    rng = np.random.default_rng(8)
+    both = rng.random((6_000, 2)) * [80.0, 60.0]
+    inside = [contains_xy(shape, both[:, 0], both[:, 1]) for shape in (left, right)]
+    points = np.vstack([both[inside[0]], both[inside[1]][::4]])
+    owner = np.repeat([0, 1], [inside[0].sum(), len(points) - inside[0].sum()])
+    moved = with_long_waves_gone(points, [left, right], owner, np.zeros(len(points), np.bool_))
+    for k, shape in enumerate((left, right)):
+        assert contains_xy(shape, *moved[owner == k].T).all()
+    assert (moved != points).any(axis=1).mean() > 0.9
 
 
 @given(
