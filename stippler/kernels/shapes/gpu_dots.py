@@ -151,8 +151,8 @@ def pack(
     """Pack the given rows of dots into consecutive rows of `out`; `selected` is of all dots."""
     parallel_for(
         _pack, len(out), rows, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
-        dots.angle_rad, dots.roughness, dots.seed, dots.constraint, selected, out.view(np.float32), out,
-        grain=_GRAIN,
+        dots.angle_rad, dots.roughness, dots.seed, dots.constraint, selected, out.view(np.float32),
+        out, grain=_GRAIN,
     )  # fmt: skip
 
 
