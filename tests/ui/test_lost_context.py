@@ -60,7 +60,7 @@ def test_a_driver_that_is_reset_within_a_stroke_loses_nothing(painted, monkeypat
     monkeypatch.setattr(Window, "is_lost", property(lambda _: next(lost, False)))
     host.move(PLACE[0] + 31, PLACE[1])
     host.settle()
-    assert "reset" in app.session.messages.text
+    assert "reset" in host.said()
     assert not app.session.document.in_stroke
     assert len(app.session.document.dots) == n
     host.drag((PLACE[0], PLACE[1] + 60), (PLACE[0] + 60, PLACE[1] + 60), "left")
