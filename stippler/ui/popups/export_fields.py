@@ -14,7 +14,7 @@ from stippler.files.write.formats import NONE, PLATE
 from stippler.files.write.options import Option
 from stippler.ui.widgets import Widgets
 
-AUTO = "auto"
+NOTHING = "–"
 _SHORT = 24  # letters of all choices, up to which they stand side by side
 _ELSEWHERE = ("profile", "column", "print_width", "press", "gain", "least_dot")
 _MARK_ALL = imgui.InputTextFlags_.auto_select_all
@@ -89,7 +89,7 @@ def draw_option(widgets: Widgets, choices: Choices, option: Option, *, shown: An
             widgets.refuse(str(error))
 
     if option.type is bool:
-        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + widgets.indent - 0.0)
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + widgets.indent)
         new = widgets.check(option.title, bool(shown), option.help)
         if new != shown:
             take(new)
@@ -149,7 +149,7 @@ def number_field(
     take: Callable[[float | None], None],
 ) -> None:
     """Take a number, or nothing for what is found by itself; counts when the field is left."""
-    shown = AUTO if value is None else f"{value:.6g} {unit}".strip()
+    shown = NOTHING if value is None else f"{value:.6g} {unit}".strip()
     widgets.label(label)
     _, text = imgui.input_text(f"##{label}", shown, _MARK_ALL)
     done = imgui.is_item_deactivated_after_edit()
@@ -158,7 +158,7 @@ def number_field(
     text = text.strip()
     if not done or text == shown:
         return
-    if text.lower() in ("", AUTO):
+    if text.lower() in ("", NOTHING, "-", "auto", "none"):
         take(None)
         return
     known = unit if unit in _KNOWN_UNITS else ""

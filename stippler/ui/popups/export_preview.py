@@ -25,7 +25,7 @@ _PAPER, _TRAVEL = (255, 255, 255), (236, 120, 96)
 _TO_COME = 0.16  # of its colour, that ink has before it is drawn
 _PLAYED_S = 20.0  # all of a drawing, however long it takes
 _WHEEL, _MOST_PX_PER_MM = 1.25, 800.0
-_DESK, _EDGE = 0xFF8C8880, 0x60000000
+_EDGE = 0x60000000
 
 
 @dataclass(slots=True)
@@ -88,7 +88,7 @@ class ExportPreview:
         widgets.note("proof")
         draw = imgui.get_window_draw_list()
         draw.push_clip_rect((low.x, low.y), high, True)
-        draw.add_rect_filled((low.x, low.y), high, _DESK)
+        draw.add_rect_filled((low.x, low.y), high, widgets.packed(widgets.theme.desk))
         if look.sheet is not None:
             sheet = look.sheet.width_mm, look.sheet.height_mm
             self._take_pointer(sheet, size, ratio)
@@ -201,7 +201,7 @@ class ExportPreview:
 
 
 def composed(look: Look, playing: Playing) -> NDArray[np.uint8]:
-    """Return (rows, columns, 3) of the pens' work at a moment: what is drawn, travelled, to come."""
+    """Return (rows, columns, 3) of a moment: what is drawn, what travelled over, what to come."""
     import numpy as np
 
     moments = look.moments
@@ -236,19 +236,27 @@ def draw_playing(widgets: Widgets, playing: Playing, look: Look, width: float, d
         imgui.SliderFlags_.always_clamp,
     )  # fmt: skip
     widgets.note("moment")
-    widgets.tip("Any moment of the drawing.")
     if moved:
         playing.at_s, playing.runs = share * total, False
     imgui.same_line(0.0, widgets.gap)
-    widgets_text = f"{duration_text(playing.at_s)} of {duration_text(total)}"
     imgui.align_text_to_frame_padding()
-    imgui.text_colored((*widgets.theme.faint, 1.0), widgets_text)
+    told = f"{clock_text(playing.at_s)} of {clock_text(total)}"
+    imgui.text_colored((*widgets.theme.faint, 1.0), told)
     imgui.same_line(0.0, widgets.gap)
     playing.travel = widgets.check("Travel", playing.travel, "Ways above the paper, too.")
 
 
+def clock_text(seconds: float) -> str:
+    """Return a time as clocks show it."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
 def duration_text(seconds: float) -> str:
     """Return a time as people say it."""
+    if seconds < 1:
+        return "less than a second"
     if seconds < 90:
         return f"{seconds:.0f} s" if seconds >= 9.95 else f"{seconds:.1f} s"
     minutes = round(seconds / 60)
