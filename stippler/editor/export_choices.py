@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -214,7 +215,7 @@ def _press_of(values: dict[str, Any]) -> tuple[float, float]:
 
 def _with_ending(path: str, ending: str) -> str:
     """Return a path with another ending; what only looks like one stays."""
-    name = Path(path).name
+    name = path.rsplit("/", 1)[-1].rsplit(os.sep, 1)[-1]
     stem = Path(name).stem if Path(name).suffix.lower() in (*ENDINGS, *STIPPLE.endings) else name
     folder = path[: len(path) - len(name)]
     return f"{folder}{stem or 'drawing'}{ending}"

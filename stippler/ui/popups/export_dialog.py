@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 TITLE = "Export the drawing"
 _WIDTH, _HEIGHT, _FIELDS = 1080.0, 740.0, 344.0
+_NOTCH = 5.0  # lines that the wheel goes
 _UNITS = ((1e6, "MB", 1), (1e3, "kB", 0))
 
 
@@ -151,12 +152,17 @@ class ExportDialog:
         bottom = imgui.get_frame_height_with_spacing() + 2.2 * imgui.get_text_line_height()
         room = imgui.get_content_region_avail()
         fields = min(_FIELDS * widgets.scale, 0.5 * room.x)
-        imgui.begin_child("##sheet", (room.x - fields - widgets.gap, room.y - bottom))
-        self._draw_preview(widgets)
-        imgui.end_child()
-        imgui.same_line(0.0, widgets.gap)
-        imgui.begin_child("##fields", (fields, room.y - bottom))
+        left, top = imgui.get_cursor_pos()
+        # the fields come first, so that Tab goes from the path to them
+        imgui.set_cursor_pos((left + room.x - fields, top))
+        imgui.begin_child("##fields", (fields, room.y - bottom), imgui.ChildFlags_.nav_flattened)
         self._draw_fields(widgets)
+        _scroll_beside_typing()
+        imgui.end_child()
+        imgui.set_cursor_pos((left, top))
+        width = room.x - fields - widgets.gap
+        imgui.begin_child("##sheet", (width, room.y - bottom), imgui.ChildFlags_.nav_flattened)
+        self._draw_preview(widgets)
         imgui.end_child()
         if (self.choices.path, self.choices.given) != before:
             self.problem = ""
@@ -364,6 +370,14 @@ def _same(one: Asked, other: Asked) -> bool:
         and one.wants_course == other.wants_course
         and one.wants_moments == other.wants_moments
     )
+
+
+def _scroll_beside_typing() -> None:
+    """Let the wheel scroll while a text field has the keyboard, which ImGui does not."""
+    wheel = imgui.get_io().mouse_wheel
+    blocked = imgui.HoveredFlags_.allow_when_blocked_by_active_item
+    if wheel and imgui.is_any_item_active() and imgui.is_window_hovered(blocked):
+        imgui.set_scroll_y(imgui.get_scroll_y() - wheel * _NOTCH * imgui.get_text_line_height())
 
 
 def bytes_text(n: int) -> str:

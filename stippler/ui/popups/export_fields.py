@@ -133,7 +133,7 @@ def text_field(
 ) -> None:
     """Take a text as it is typed."""
     widgets.label(label)
-    changed, text = imgui.input_text(f"##{label}", text)
+    changed, text = imgui.input_text(f"##{label}", text, _MARK_ALL)
     widgets.note(label)
     widgets.tip(tip)
     if changed:

@@ -122,7 +122,12 @@ class ExportPreview:
             x, y = self._middle
             self._middle = x - io.mouse_delta.x / scale, y - io.mouse_delta.y / scale
             self._stay(sheet)
-        if imgui.is_item_hovered() and io.mouse_wheel:
+        # while the path has the keyboard, too
+        blocked = (
+            imgui.HoveredFlags_.allow_when_blocked_by_active_item
+            | imgui.HoveredFlags_.no_nav_override
+        )
+        if imgui.is_item_hovered(blocked) and io.mouse_wheel:
             self._hold(sheet, size, ratio)
             low = imgui.get_item_rect_min()
             at = io.mouse_pos.x - low.x, io.mouse_pos.y - low.y
