@@ -26,6 +26,7 @@ from stippler.stippling.relax import AT_REST, Relaxation, StepReport
 from stippler.stippling.spacing import AT_LAST, TO_INK, Wanted
 from stippler.stippling.task import Standing, Task
 from stippler.stippling.tone import DotRule, ink_for
+from stippler.stippling.transport import with_long_waves_gone
 
 _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solved
 _LEVELS = 65
@@ -80,6 +81,14 @@ class StandingDraft:
         fixed = self.standing.fixed
         return np.zeros(len(self.points), np.bool_) if fixed is None else fixed
 
+    def without_long_waves(self, still: NDArray[np.bool_], sheet: _Sheet | None = None) -> Floats:
+        """Return where the dots lie without long waves in them, each within its part."""
+        of_dot = self.standing.part_of_dot
+        if of_dot is None:
+            of_dot = np.zeros(len(self.points), np.intp)
+        density = None if sheet is None else sheet.density_at
+        return with_long_waves_gone(self.points, self.parts, of_dot, still, density)
+
     def progress(self, step: Step, watched: bool) -> Progress:
         """Return a snapshot after a step."""
         points = _frozen(self.points) if watched else np.empty((0, 2))
@@ -114,11 +123,12 @@ def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     style, reference, standing = draft.task.style, draft.task.reference, draft.standing
     field = None
     if style.weighted and reference is not None:
-        field = PictureField.of(
-            reference, ((np.square,),)
-        )  # dots settle at the root of their weight
+        # dots settle at the root of their weight
+        field = PictureField.of(reference, ((np.square,),))
     evenly = reference is None and style.spacing == "even"
     method = "lloyd" if style.spacing == "even" and not evenly else style.spacing
+    if evenly:
+        draft.points = draft.without_long_waves(draft.fixed)
     engine = Relaxation(
         draft.points, draft.parts, draft.fixed, standing.part_of_dot, field, method=method
     )
@@ -133,9 +143,10 @@ def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
 def _keeping_tone(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     reference, standing = draft.task.reference, draft.standing
     assert reference is not None, "without one there is no tone to keep"
-    start = draft.points
-    sheet = _Sheet(start, draft.radius_mm, reference)
-    still = draft.fixed | sheet.beside(start)
+    before = draft.points
+    sheet = _Sheet(before, draft.radius_mm, reference)
+    still = draft.fixed | sheet.beside(before)
+    start = draft.without_long_waves(still, sheet)
     field = DensityField(sheet.raster.darkness, sheet.raster.pixel_mm)
 
     def engine_for(still: NDArray[np.bool_]) -> Relaxation:
@@ -148,6 +159,7 @@ def _keeping_tone(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     engine.set_rules(AT_LAST)
     report = engine.step()
     awake = _around_restless(start, engine.points, ~still)
+    awake |= (start != before).any(axis=1)
     if not awake.any():
         yield report
         return
@@ -219,6 +231,15 @@ class _Sheet:
         spacing = np.sqrt(size.prod() / len(position_mm))
         near = np.minimum(position_mm, size - position_mm).min(axis=1) < _BESIDE * spacing
         return np.asarray(near, np.bool_)
+
+    def density_at(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how dense dots are to be at some places, in any unit; none beyond the page."""
+        px = position_mm / self.raster.pixel_mm
+        beyond = (px < 0.0) | (px >= np.array(self.raster.darkness.shape[::-1]))
+        inside = np.asarray(~beyond.any(axis=1))
+        level = self.raster.darkness_under(np.where(inside[:, None], px, 0.0)) * self.wanted.scale
+        per_area = np.interp(level, np.arange(len(self.wanted.per_area)), self.wanted.per_area)
+        return np.where(inside, per_area, 0.0)
 
     def solved_at(self, position_mm: NDArray[np.float64]) -> NDArray[np.float32] | None:
         """Return sizes for the tone at these places; those not solved before stay."""
