@@ -24,10 +24,11 @@ from stippler.editor.keeping import Keeping
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
 from stippler.errors import ParameterError, StipplerError
-from stippler.jobs import work
+from stippler.jobs import reading, stippling, work
 from stippler.jobs.work import Source, Work
 from stippler.names import shown
 from stippler.stippling.fill import Filling as FillValues
+from stippler.stippling.task import SETTLE, Standing, Task
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -43,7 +44,7 @@ Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 class Stipple(Protocol):
     """Makes a job out of a picture, a style, and the picture's reference if it is known."""
 
-    def __call__(self, source: Source, plan: Style, reference: Reference | None) -> Iterator[Work]:
+    def __call__(self, source: Source, style: Style, reference: Reference | None) -> Iterator[Work]:
         """Return the job's results to come."""
         ...
 
@@ -55,14 +56,14 @@ class Session:
     ----------
     worker, exporter : Worker
         Where drawings are made and written; the owner closes them.
-    plan : Style
+    style : Style
         To begin with.
     stipple : callable
         Makes the jobs.
 
     Attributes
     ----------
-    plan : Style
+    style : Style
         As the panels show it; the drawing holds what its dots were asked for with.
     tone, width_mm, adjustment
         Likewise: how the next start takes the picture.
@@ -82,7 +83,7 @@ class Session:
         self,
         worker: Worker[Work],
         exporter: Worker[Path],
-        plan: Style,
+        style: Style,
         *,
         tone: str,
         width_mm: float,
@@ -94,7 +95,7 @@ class Session:
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
         self._make_ready = make_ready
-        self.plan = plan
+        self.style = style
         self.tone, self.width_mm = tone, width_mm
         self.adjustment = NEUTRAL
         self.activity: Activity = Idle()
@@ -118,11 +119,11 @@ class Session:
 
     def open_drawing(self, path: Path) -> None:
         """Open a drawing that was saved."""
-        self._reopen(work.open_drawing(path, is_warm=self._is_warm), file=path)
+        self._reopen(reading.open_drawing(path, is_warm=self._is_warm), file=path)
 
     def recover(self, lost: Lost) -> None:
         """Open what a crash has left of a drawing."""
-        self._reopen(work.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
+        self._reopen(reading.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
 
     def _reopen(self, job: Iterator[Work], *, file: Path | None, lost: Lost | None = None) -> None:
         self._supersede()
@@ -141,7 +142,7 @@ class Session:
             self._read = Source(
                 Path(picture.name or "picture"), self.tone, self.width_mm, NEUTRAL, picture.data
             )
-        self.plan = document.drawing.style_of(0)
+        self.style = document.drawing.style_of(0)
         if lost is not None:
             self.messages.say(f"{lost.name} is as it was; save it to keep it")
 
@@ -156,7 +157,7 @@ class Session:
         self.activity = Idle()
 
     def start(self) -> None:
-        """Stipple the open picture by the plan, from the beginning."""
+        """Stipple the open picture by the style, from the beginning."""
         source = self._asked
         if source is None:
             self.messages.say("open a picture first", WARNING)
@@ -167,7 +168,7 @@ class Session:
         """Begin a drawing on an empty page."""
         self._supersede()
         request = self._worker.start(self._make_ready)
-        self._run(Opening(request, work.PREPARE, None, self.plan, page))
+        self._run(Opening(request, work.PREPARE, None, self.style, page))
 
     def relax(self, iterations: int, *, weighted: bool) -> None:
         """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""
@@ -180,10 +181,8 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
-        spacing = self.plan.spacing
-        request = self._worker.start(
-            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
-        )
+        style = replace(self.style, weighted=weighted)
+        request = self._worker.start(lambda: stippling.relax_drawing(frozen, style, iterations))
         self._run(Relaxing(request, "relax", self.source, total=iterations))
 
     def take_over(self) -> bool:
@@ -202,9 +201,9 @@ class Session:
         n_done = making.done if making.stage == "relax" else style.iterations
         document.end_draft()
         dots = document.begin_run("Settle")
-        request = self._worker.start(
-            lambda: work.carry_on(reference, style, dots.position_mm, dots.radius_mm, n_done)
-        )
+        standing = Standing(dots.position_mm, dots.radius_mm, dots.fixed)
+        task = Task(style, reference, SETTLE, standing=standing, n_done=n_done)
+        request = self._worker.start(lambda: stippling.go_on(task))
         relaxing = Relaxing(
             request, "relax", making.source, done=n_done, total=style.iterations,
             is_held=making.is_held,
@@ -222,7 +221,7 @@ class Session:
             return
         self._supersede()
         outline = document.drawing.outlines()[0]
-        request = self._worker.start(lambda: work.fill(outline, values))
+        request = self._worker.start(lambda: stippling.fill(outline, values))
         self._run(Filling(request, "fill", self.source, values.radius_mm))
 
     def undo(self) -> None:
@@ -266,10 +265,10 @@ class Session:
             self._end("stopped")
             self.messages.say("stopped; the dots that are there stay")
 
-    def edit_plan(self, **changes: Any) -> bool:
-        """Change fields of the plan; a value outside its range is refused with a line."""
+    def edit_style(self, **changes: Any) -> bool:
+        """Change fields of the style; a value outside its range is refused with a line."""
         try:
-            self.plan = replace(self.plan, **changes)
+            self.style = replace(self.style, **changes)
         except ParameterError as error:
             self.messages.say(str(error), WARNING)
             return False
@@ -459,7 +458,7 @@ class Session:
         if asked is None:
             return False
         style = job.style if isinstance(job, Opening | Making) else self._style
-        return asked != self._as_wanted(asked) or style != self.plan
+        return asked != self._as_wanted(asked) or style != self.style
 
     # --- inside -----------------------------------------------------------------------------
 
@@ -481,7 +480,7 @@ class Session:
     def _begin(self, source: Source) -> None:
         self._supersede()
         known = self.reference if source.is_read_as(self._read) else None
-        style, stipple = self.plan, self._stipple
+        style, stipple = self.style, self._stipple
         request = self._worker.start(lambda: stipple(source, style, known))
         if known is None:
             self._run(Opening(request, work.READ, source, style))
@@ -527,7 +526,7 @@ class Session:
         from stippler.drawing.document import Document
         from stippler.drawing.drawing import Drawing
 
-        drawing = Drawing.blank(page, self.plan)
+        drawing = Drawing.blank(page, self.style)
         drawing.reference = reference
         if source is not None and (self._read is None or self._read.path != source.path):
             self.adjustment = source.adjustment

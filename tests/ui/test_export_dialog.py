@@ -9,7 +9,7 @@ from PIL import Image
 
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.jobs import work
+from stippler.editor import exports
 
 
 @pytest.fixture
@@ -268,7 +268,7 @@ def test_a_press_that_is_calibrated_here_is_solved_for(desk, dialog, tmp_path):
 def test_a_long_export_is_shown_and_can_be_given_up(desk, dialog, tmp_path, monkeypatch):
     """The file that was there survives."""
     gate, asked = Event(), []
-    save = work.export_drawing
+    save = exports.export_drawing
 
     def slow(drawing, path, options, inputs, writing):
         asked.append(writing)
@@ -293,7 +293,7 @@ def test_a_long_export_is_shown_and_can_be_given_up(desk, dialog, tmp_path, monk
 
         return stepwise()
 
-    monkeypatch.setattr(work, "export_drawing", slow)
+    monkeypatch.setattr(exports, "export_drawing", slow)
     out = tmp_path / "large.svg"
     out.write_text("precious")
     desk.host.type(out.name)
