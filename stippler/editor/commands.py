@@ -16,6 +16,7 @@ GROUPS = {
     "edit": "Edit",
     "selection": "Select",
     "work": "Dots",
+    "line": "Lines",
     "tool": "Tool",
     "view": "View",
     "panel": "Panels",

@@ -19,6 +19,7 @@ from stippler.editor.events import (
 )
 from stippler.editor.hands import Hands
 from stippler.editor.keymap import load_keys
+from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.rates import FrameRate
@@ -37,7 +38,8 @@ from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.layout import DRAWING, HISTORY, LINES, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
@@ -96,6 +98,7 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.lines = Lines(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
@@ -105,6 +108,7 @@ class Editor:
                 DRAWING: self._draw_drawing,
                 TOOL: self._draw_tool,
                 SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
+                LINES: lambda: draw_lines(self.widgets, self.lines, self.commands),
                 VIEW: self._draw_view,
                 HISTORY: self._draw_history,
             },
@@ -130,6 +134,7 @@ class Editor:
             self.session,
             self.painting,
             Selecting(self.session, self.painting),
+            self.lines,
             self.pointer,
             self.view,
             self.look,

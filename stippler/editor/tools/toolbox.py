@@ -24,6 +24,8 @@ from stippler.editor.events import (
 from stippler.editor.messages import WARNING
 from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
+from stippler.editor.tools.line_choice import ChosenLines
+from stippler.editor.tools.line_tool import LineTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
 from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Sight, Tool, ToolState
@@ -41,7 +43,7 @@ _VALUES_FILE = "tools.json"
 
 def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
     """Make every tool, in the order of the strip; a new one is a line here."""
-    return (*(BrushTool(kind, shelf) for kind in KINDS), SelectTool())
+    return (*(BrushTool(kind, shelf) for kind in KINDS), SelectTool(), LineTool())
 
 
 class Toolbox:
@@ -62,6 +64,7 @@ class Toolbox:
         The one at hand; without one the pointer only looks around.
     shelf : BrushShelf
     selection : Selection
+    lines : ChosenLines
     state : ToolState
     """
 
@@ -74,6 +77,7 @@ class Toolbox:
         self._by_name = {tool.name: tool for tool in self.tools}
         self.tool: Tool | None = None
         self.selection = Selection()
+        self.lines = ChosenLines()
         self.state: ToolState = RESTING
         self.mods = NO_MODS
         self._n_strokes = seed
@@ -162,8 +166,9 @@ class Toolbox:
         if self.tool is None:
             return self.state.overlay
         sight = Sight(
-            document, self.selection, at_mm, 1.0 / px_per_mm, self.mods, is_held=self.is_busy
-        )
+            document, self.selection, at_mm, 1.0 / px_per_mm, self.mods, is_held=self.is_busy,
+            lines=self.lines,
+        )  # fmt: skip
         own, held = self.tool.overlay(sight), self.state.overlay
         return Overlay(own.paths + held.paths, own.handles + held.handles, held.tip or own.tip)
 
@@ -219,6 +224,7 @@ class Toolbox:
         for tool in self.tools:
             tool.forget()
         self.selection.forget()
+        self.lines.choose(None)
 
     def preview(self, at_mm: Point, reference: Reference | None) -> Preview | None:
         """Return what a press would do to the dots, where that can be shown."""
@@ -238,6 +244,7 @@ class Toolbox:
             self._say,
             self.mods,
             self._heading_rad,
+            self.lines,
         )
 
     def _note_mods(self, event: Event) -> None:
