@@ -31,6 +31,7 @@ from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
 from stippler.ui.actions import Parts, commands_for
+from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
@@ -38,7 +39,7 @@ from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import DRAWING, HISTORY, LINES, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
@@ -95,6 +96,7 @@ class Editor:
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
+        self._area_overlay = AreaOverlay()
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
@@ -108,12 +110,14 @@ class Editor:
                 DRAWING: self._draw_drawing,
                 TOOL: self._draw_tool,
                 SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
-                LINES: lambda: draw_lines(self.widgets, self.lines, self.commands),
                 VIEW: self._draw_view,
                 HISTORY: self._draw_history,
             },
             kept.closed,
         )
+        self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
+            "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
+        }
         self.lens_key = LensKey(self.look)
         self.menu = MenuBar()
         self.commands = self.popups.commands = commands_for(self._parts())
@@ -280,6 +284,9 @@ class Editor:
     def _draw_tool(self) -> None:
         n_selected = self.painting.n_selected
         draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected)
+        if self.painting.toolbox.name in self._of_tools:
+            self.widgets.rule()
+            self._of_tools[self.painting.toolbox.name]()
 
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
@@ -309,6 +316,10 @@ class Editor:
         return self.painting.toolbox.overlay(document, self.pointer.at_mm, camera.px_per_mm)
 
     def _draw_overlay(self, area: Rect) -> None:
+        tool, document = self.painting.toolbox.tool, self.session.document
+        if document is not None and tool is not None and tool.shows_areas:
+            choice = self.painting.toolbox.areas
+            self._area_overlay.draw(document, choice, self.view, area, self._ratio)
         draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
@@ -329,7 +340,7 @@ class Editor:
         draw_status(self.widgets, self.session, sight, self._rate)
 
     def _previewed(self) -> Preview | None:
-        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        """Return the change that is held in a panel, or that the brush or the style will make."""
         hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None

@@ -169,6 +169,15 @@ def _line(p: Pen) -> None:
         p.dot(x, y, 0.08)
 
 
+def _nodes(p: Pen) -> None:
+    p.line((0.12, 0.78), (0.3, 0.42), (0.56, 0.3), (0.88, 0.22))
+    for x, y in ((0.12, 0.78), (0.44, 0.34), (0.88, 0.22)):
+        low, high = p.at(x - 0.1, y - 0.1), p.at(x + 0.1, y + 0.1)
+        p.draw.add_rect_filled(low, high, p.colour)
+    p.line((0.44, 0.34), (0.62, 0.86))
+    p.ring(0.62, 0.86, 0.09)
+
+
 _ICONS: dict[str, Callable[[Pen], None]] = {
     "": _none,
     "add": _add,
@@ -187,6 +196,7 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "comb": _comb,
     "select": _select,
     "line": _line,
+    "nodes": _nodes,
 }
 
 

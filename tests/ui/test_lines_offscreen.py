@@ -99,12 +99,10 @@ def test_the_panel_changes_lines_and_lays_rows(lines):
     host.click((500, 300))
     host.click((800, 300))
     host.key("enter")
-    editor.show_panel("Lines")
-    host.settle()
-    host.fill("Width", "1.5")
+    host.fill("Its width", "1.5")
     (k,) = table(lines)
     assert table(lines)[k].width_mm == (1.5, 1.5)  # one width stays one
-    host.fill("At its end", "0.5")
+    host.fill("Its end", "0.5")
     assert table(lines)[k].width_mm == (1.5, 0.5)
     host.click("Guide")
     assert not table(lines)[k].printed
@@ -139,12 +137,36 @@ def test_wrong_values_are_refused_with_a_line(lines):
     host.click((500, 300))
     host.click((800, 300))
     host.key("enter")
-    lines.app.editor.show_panel("Lines")
-    host.settle()
-    host.fill("Width", "900")
+    host.fill("Its width", "900")
     assert "0 to 100 mm" in host.said()
     (line,) = table(lines).values()
     assert line.width_mm == pytest.approx((0.3, 0.3))
     host.fill("Dot gap", "-3")
     host.click("Lay the row")
     assert "no distance" in host.said()
+
+
+def test_nodes_of_lines_are_dragged_and_their_dots_go_along(lines):
+    tool, host = lines.app.editor.painting.toolbox.tool, lines.host
+    tool.set("meeting", "adhere")
+    tool.set("reach_mm", 3.0)
+    host.click((500, 300))
+    host.click((650, 300))
+    host.click((800, 300))
+    host.key("enter")
+    lines.app.editor.commands["tool.nodes"].run()
+    host.settle()
+    host.drag((650, 300), (650, 380), "left")
+    (k,) = table(lines)
+    line = table(lines)[k]
+    assert len(line.path.nodes()) == 3
+    assert np.ptp(line.path.points_mm[:, 1]) > 5
+    dots = document(lines).dots
+    rows = np.flatnonzero((dots.constraint == ON_CURVE) & (dots.curve == k))
+    assert len(rows) > 10
+    assert np.allclose(dots.position_mm[rows], line.at(dots.parameter[rows]), atol=1e-9)
+    host.key("delete")  # the node, not the line
+    assert len(table(lines)[k].path.nodes()) == 2
+    host.key("z", ctrl=True)
+    host.key("z", ctrl=True)
+    assert np.ptp(table(lines)[k].path.points_mm[:, 1]) < 1

@@ -49,7 +49,6 @@ class LineTool(Tool):
         "start closes, Backspace takes a node back. Freehand: draw. Move: drag a line; what "
         "adheres to it goes along."
     )
-    commands = ("line.row", "line.line_up", "line.spread", "line.release", "line.delete")
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -74,6 +73,8 @@ class LineTool(Tool):
 
     def begin(self, event: Event, desk: Desk) -> ToolState | None:
         """Begin a line, or take hold of one."""
+        if isinstance(event, KeyDown) and self.wants(event, desk):
+            return self._deleted(desk)
         if not (isinstance(event, Pressed) and event.button == LEFT):
             return None
         at, how = desk.at(event), self.value("how")
@@ -84,6 +85,20 @@ class LineTool(Tool):
         if how == FREEHAND:
             return Freehand(self, [at])
         return Penning(self, [Node(at)], at, event.t_s, is_down=True)
+
+    def wants(self, event: KeyDown, desk: Desk) -> bool:
+        """Return whether Delete is for the chosen lines."""
+        is_delete = event.key in ("delete", "backspace")
+        no_dots = not len(desk.selection.ids)
+        return is_delete and no_dots and bool(desk.lines.alive(desk.document))
+
+    def _deleted(self, desk: Desk) -> ToolState:
+        chosen = desk.lines.alive(desk.document)
+        desk.document.begin("Delete lines" if len(chosen) > 1 else "Delete line")
+        for k in chosen:
+            set_line(desk.document, k, None)
+        desk.document.commit()
+        return RESTING
 
     def line(self, path: LinePath, document: Document) -> Line:
         """Return a line as the parameters have it."""

@@ -35,6 +35,8 @@ def selection_commands(parts: Parts) -> Iterator[Command]:
          (Key("c", CTRL),)),
         ("cut", "Cut the selection", "Cut", "copies and deletes it.", selecting.cut,
          (Key("x", CTRL),)),
+        ("delete", "Delete the selection", "Delete", "", painting.delete,
+         (Key("delete"), Key("backspace"))),
         ("duplicate", "Duplicate the selection", "Duplicate", "the copies are selected then.",
          painting.duplicate, (Key("d", CTRL),)),
         ("fix", "Fix the selection", "Fix dots", "they stay where they are from now on.",
@@ -51,25 +53,10 @@ def selection_commands(parts: Parts) -> Iterator[Command]:
          lambda: painting.resize(-_RESIZE_PERCENT), ()),
     ):  # fmt: skip
         yield Command(f"selection.{name}", label, run, keys, can=has_some, short=short, tip=tip)
-    yield Command("selection.delete", "Delete the selection", _deleting(parts),
-                  (Key("delete"), Key("backspace")), short="Delete",
-                  can=lambda: has_some() or bool(parts.lines.chosen))  # fmt: skip
     yield Command("selection.paste", "Paste", lambda: selecting.paste(pointer.at_mm),
                   (Key("v", CTRL),), can=lambda: selecting.has_copy, short="Paste",
                   tip="adds what was copied, at the pointer; it is selected then.")  # fmt: skip
     yield from _nudge_commands(parts)
-
-
-def _deleting(parts: Parts) -> Callable[[], None]:
-    """Return what deletes the chosen dots, or lines where no dots are chosen."""
-
-    def delete() -> None:
-        if not parts.painting.n_selected and parts.lines.chosen:
-            parts.lines.delete()
-        else:
-            parts.painting.delete()
-
-    return delete
 
 
 def _nudge_commands(parts: Parts) -> Iterator[Command]:
@@ -102,7 +89,7 @@ def tool_commands(parts: Parts) -> Iterator[Command]:
     yield Command("tool.none", "No tool", lambda: toolbox.choose(""), (Key("v"),),
                   is_on=lambda: toolbox.tool is None)  # fmt: skip
     for tool in toolbox.tools:
-        keys = (Key(tool.key),) if tool.key else ()
+        keys = (Key.read(tool.key),) if tool.key else ()
         yield Command(f"tool.{tool.name}", tool.label, chooser(tool.name), keys,
                       is_on=used(tool.name))  # fmt: skip
     shelf = toolbox.shelf

@@ -24,9 +24,7 @@ def draw_lines(widgets: Widgets, lines: Lines, commands: Commands) -> None:
     widgets.heading("Lines")
     table = lines.all
     if not table:
-        widgets.caption("No lines yet. The tool Line draws them by a pen or freehand.")
-        if widgets.button("Draw lines", commands["tool.line"].explained, width=-1.0):
-            commands["tool.line"].run()
+        widgets.caption("No lines yet.")
     else:
         _draw_list(widgets, lines, table)
         if chosen := lines.chosen:
@@ -87,8 +85,8 @@ def _draw_values(widgets: Widgets, lines: Lines, chosen: list[int], line: Line) 
             lines.change(chosen, name=name.strip()[:60])
     else:
         widgets.caption(f"{len(chosen)} lines")
-    start = widgets.length("Width", line.width_mm[0], "Where it begins; 0 is no ink.")
-    end = widgets.length("At its end", line.width_mm[1], "Another width tapers the line.")
+    start = widgets.length("Its width", line.width_mm[0], "Where it begins; 0 is no ink.")
+    end = widgets.length("Its end", line.width_mm[1], "Another width tapers the line.")
     if (start, end) != line.width_mm:
         if end == line.width_mm[1] == line.width_mm[0]:
             end = start  # one width stays one width
@@ -103,15 +101,15 @@ def _draw_values(widgets: Widgets, lines: Lines, chosen: list[int], line: Line) 
         "Dots within reach line up on it and stay on it.",
     )
     labels = ("Ignore", "Keep off", "Adhere")
-    meeting = _MEETINGS[widgets.segments("Dots", labels, _MEETINGS.index(line.meeting), tips)]
+    meeting = _MEETINGS[widgets.segments("Dots do", labels, _MEETINGS.index(line.meeting), tips)]
     if meeting != line.meeting:
         lines.change(chosen, meeting=meeting)
     if line.meeting == "distance":
-        distance = widgets.length("Distance", line.distance_mm, "From its edge.")
+        distance = widgets.length("Keep off", line.distance_mm, "From its edge.")
         if distance != line.distance_mm:
             lines.change(chosen, distance_mm=distance)
     if line.meeting == "adhere":
-        reach = widgets.length("Reach", line.reach_mm, "From how far dots line up.")
+        reach = widgets.length("Its reach", line.reach_mm, "From how far dots line up.")
         if reach != line.reach_mm:
             lines.change(chosen, reach_mm=reach)
     n = sum(lines.n_on(k) for k in chosen)
