@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from stippler.editor.area_acts import AreaActs
 from stippler.editor.lines import Lines
 from stippler.editor.painting import Painting
 from stippler.editor.pointer import Pointer
@@ -37,6 +38,7 @@ class Parts:
     painting: Painting
     selecting: Selecting
     lines: Lines
+    area_acts: AreaActs
     pointer: Pointer
     view: View
     look: Look
