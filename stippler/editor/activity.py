@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from stippler.drawing.style import Style
     from stippler.files.native.recovery import Lost
     from stippler.jobs.work import Source, Work
-    from stippler.stippling.stipple import Progress
+    from stippler.stippling.progress import Progress
 
 
 class Desk(Protocol):
@@ -241,7 +241,7 @@ Activity = Idle | Opening | Reopening | Making | Relaxing | Filling
 
 def _report(desk: Desk, n_dots: int, last: Progress | None) -> None:
     """Say what has been drawn, and what it falls short of."""
-    from stippler.stippling.stipple import notes_on
+    from stippler.stippling.progress import notes_on
 
     desk.messages.say(f"{n_dots:,} dots drawn")
     notes = notes_on(last) if last is not None else ()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.editor.messages import ERROR, Messages
-from stippler.jobs import work
+from stippler.jobs.exporting import Writing, export_drawing
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -41,7 +41,7 @@ class Exports:
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
-        self._writing = work.Writing()
+        self._writing = Writing()
         self.n_written = 0
         self.begin_drawing()
 
@@ -108,9 +108,9 @@ class Exports:
             The files that the drawing was made from, which are never written over.
         """
         drawing = document.drawing.snapshot()
-        self._writing = writing = work.Writing()
+        self._writing = writing = Writing()
         self._request = self._worker.start(
-            lambda: work.export_drawing(drawing, path, options, inputs, writing)
+            lambda: export_drawing(drawing, path, options, inputs, writing)
         )
         self._mark, self._is_copy = _mark(document), is_copy
         self._messages.say(f"writing {path.name}")

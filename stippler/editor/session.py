@@ -24,10 +24,11 @@ from stippler.editor.keeping import Keeping
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
 from stippler.errors import ParameterError, StipplerError
-from stippler.jobs import work
+from stippler.jobs import reading, stippling, work
 from stippler.jobs.work import Source, Work
 from stippler.names import shown
 from stippler.stippling.fill import Filling as FillValues
+from stippler.stippling.task import SETTLE, Standing, Task
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -118,11 +119,11 @@ class Session:
 
     def open_drawing(self, path: Path) -> None:
         """Open a drawing that was saved."""
-        self._reopen(work.open_drawing(path, is_warm=self._is_warm), file=path)
+        self._reopen(reading.open_drawing(path, is_warm=self._is_warm), file=path)
 
     def recover(self, lost: Lost) -> None:
         """Open what a crash has left of a drawing."""
-        self._reopen(work.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
+        self._reopen(reading.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
 
     def _reopen(self, job: Iterator[Work], *, file: Path | None, lost: Lost | None = None) -> None:
         self._supersede()
@@ -180,10 +181,8 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
-        spacing = self.style.spacing
-        request = self._worker.start(
-            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
-        )
+        style = replace(self.style, weighted=weighted)
+        request = self._worker.start(lambda: stippling.relax_drawing(frozen, style, iterations))
         self._run(Relaxing(request, "relax", self.source, total=iterations))
 
     def take_over(self) -> bool:
@@ -202,9 +201,9 @@ class Session:
         n_done = making.done if making.stage == "relax" else style.iterations
         document.end_draft()
         dots = document.begin_run("Settle")
-        request = self._worker.start(
-            lambda: work.carry_on(reference, style, dots.position_mm, dots.radius_mm, n_done)
-        )
+        standing = Standing(dots.position_mm, dots.radius_mm, dots.fixed)
+        task = Task(style, reference, SETTLE, standing=standing, n_done=n_done)
+        request = self._worker.start(lambda: stippling.go_on(task))
         relaxing = Relaxing(
             request, "relax", making.source, done=n_done, total=style.iterations,
             is_held=making.is_held,
@@ -222,7 +221,7 @@ class Session:
             return
         self._supersede()
         outline = document.drawing.outlines()[0]
-        request = self._worker.start(lambda: work.fill(outline, values))
+        request = self._worker.start(lambda: stippling.fill(outline, values))
         self._run(Filling(request, "fill", self.source, values.radius_mm))
 
     def undo(self) -> None:

@@ -11,7 +11,7 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import ParameterError
-from stippler.jobs.work import fill
+from stippler.jobs.stippling import fill
 from stippler.stippling.fill import Filling
 
 
