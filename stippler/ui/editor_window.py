@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 
@@ -196,6 +197,17 @@ class Editor:
         self._samples.close()
         self.gui.close()
 
+    def renew_graphics(self) -> None:
+        """Make GL's context and all that is in it anew: the drawing never lives there alone."""
+        with contextlib.suppress(Exception):  # a lost context may refuse anything
+            self.canvas.close()
+            self._samples.close()
+        self.gui.leave()
+        self._window.renew()
+        self.gui.join()
+        self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self.popups.recovery.renew(self._window.ctx)
+
     # --- one frame --------------------------------------------------------------------------
 
     def _frame(self, events: list[Event], now_s: float) -> None:
@@ -221,6 +233,9 @@ class Editor:
             screen.use()
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
+        if self._window.is_lost:
+            self.renew_graphics()
+            self.session.messages.say("the graphics driver was reset; nothing is lost", WARNING)
         self.lens_key.note_frame(self._window.now_s)
         name, changed = self.session.name, "*" if self.session.unsaved else ""
         self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
