@@ -172,6 +172,8 @@ class Preferences:
         self.look.opacity = min(max(self.look.opacity, 0.0), 1.0)
 
     def _take_values(self, data: dict[str, Any]) -> None:
+        if not data:  # none were ever in use
+            return
         known = {f.name for f in fields(Plan)} - set(_NOT_KEPT)
         values = {name: value for name, value in data.items() if name in known}
         if (span := values.get("size_range_mm")) is not None:
