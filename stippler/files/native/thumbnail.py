@@ -27,15 +27,17 @@ def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
     scale = side_px / max(page.width_mm, page.height_mm)
     w, h = (max(round(side * scale), 1) for side in (page.width_mm, page.height_mm))
     every = max(len(dots) // _MOST_DOTS, 1)
-    points = dots.position_mm[::every] * scale
+    x, y = (np.ascontiguousarray(column) * scale for column in dots.position_mm[::every].T)
     radii = dots.radius_mm[::every].astype(np.float64) * (scale * math.sqrt(every))
     small = radii * _FINER < 1.0
-    ink = draw_ink(points[~small], radii[~small], (h, w), _FINER)
-    at = np.floor(points[small]).astype(np.int64)
-    inside = ((at >= 0) & (at < (w, h))).all(axis=1)
-    areas = np.pi * radii[small][inside] ** 2
-    shares = np.bincount(at[inside, 1] * w + at[inside, 0], areas, w * h).reshape(h, w)
-    light = 1.0 - np.minimum(ink + shares, 1.0)
+    inside = small & (x >= 0.0) & (x < w) & (y >= 0.0) & (y < h)
+    areas = np.where(inside, np.pi * radii**2, 0.0)
+    cell = np.where(inside, np.floor(y) * w + np.floor(x), 0.0).astype(np.int64)
+    ink = np.bincount(cell, areas, w * h).reshape(h, w)
+    if not small.all():
+        large = np.flatnonzero(~small)
+        ink += draw_ink(np.stack([x[large], y[large]], 1), radii[large], (h, w), _FINER)
+    light = 1.0 - np.minimum(ink, 1.0)
     return np.asarray(np.rint(255.0 * light), np.uint8)
 
 
