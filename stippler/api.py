@@ -94,7 +94,7 @@ def stipple(
         Arrays hold grey or RGB, with or without alpha: integers over their type's range, or
         floats from 0 (black) to 1 (white).
     dots : int, optional
-        How many; None: 20,000, or what the size range asks for.
+        How many; None: as many as suit the page and the picture, or what the size range asks for.
     width : float, mm
         Width of the page; the height follows.
     size_range : (min, max), mm, optional

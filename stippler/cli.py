@@ -37,7 +37,7 @@ app = typer.Typer(
 )
 
 Dots = Annotated[
-    int | None, typer.Option(help="Number of dots; 20,000, or what --size-range asks for.")
+    int | None, typer.Option(help="Number of dots; else as many as suit the page, or --size-range.")
 ]
 SizeRange = Annotated[
     str | None,

@@ -42,7 +42,7 @@ class Style:
     name : str
         As a person calls it.
     n_dots : int or None
-        None: follows from the size range, or `DEFAULT_DOTS` without one.
+        None: follows from the size range; without one, what suits the page and the picture.
     size_range_mm : (min, max) or None
         Radii; None: the range of 1:2 that meets the tone with `n_dots`.
     iterations : int
@@ -78,13 +78,6 @@ class Style:
     spacing: str = "even"
     pen: str = DEFAULT_PEN
     name: str = ""
-
-    @property
-    def n_asked(self) -> int | None:
-        """How many dots are asked for; None if that follows from the size range."""
-        if self.n_dots is None and self.size_range_mm is None:
-            return DEFAULT_DOTS
-        return self.n_dots
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
+from stippler.stippling.default_number import with_number
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.plan import Plan
 from stippler.stippling.postprocess import part_close
@@ -34,6 +35,7 @@ def carry_on(
         As `stages` does, with the dots in the order given; the stage is "relax", then "tone",
         and radii are those given until the last, which has the stage "done".
     """
+    plan = with_number(plan, reference)
     raster = raster_for(reference, plan)
     radii = np.asarray(radius_mm, np.float64) / raster.pixel_mm
     points = np.clip(position_mm, 0.0, raster.size_mm) / raster.pixel_mm

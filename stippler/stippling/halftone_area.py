@@ -44,7 +44,7 @@ def pulses_inside(
         If so little of the area's box is the area's that the cells cannot be made so fine.
     """
     polygon_of(area, "area")
-    n_dots = int(plan.n_asked or 0)
+    n_dots = int(plan.n_dots or 0)
     h, w = darkness.shape
     part = shapely.intersection(area, shapely.box(0.0, 0.0, w, h))
     if part.area <= 0.0:

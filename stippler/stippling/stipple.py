@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from stippler.drawing.drawing import Page
 from stippler.drawing.reference import Reference
 from stippler.kernels.tone.union_share import shares_of_union
+from stippler.stippling.default_number import with_number
 from stippler.stippling.halftone import DROPPED, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.halftone_area import pulses_inside
@@ -22,7 +23,7 @@ from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.postprocess import at_edge, even_rim, part_close
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.run_relaxation import relaxed
-from stippler.stippling.tone import Shortfall, shortfall
+from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
 
 _TRIES = 6  # to meet the number of dots asked for
 _NOTED, _BANDS = 0.03, 10  # tone that may lack without a note, in so many bands of darkness
@@ -74,6 +75,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         The last one has the stage "done".
     """
     Page(reference.width_mm, reference.height_mm)  # too high a page is refused before the work
+    plan = with_number(plan, reference)
     raster = raster_for(reference, plan)
     if plan.sizes == "regions":
         yield from _stages_by_region(raster, plan, snapshots)
@@ -85,7 +87,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     ) -> Progress:
         shown = nothing
         if snapshots:
-            px = raster.trim(px, plan.n_asked)
+            px = raster.trim(px, plan.n_dots)
             shown = raster.on_page(px, raster.radii(px))
         return Progress(stage, done, total, *shown, movement_mm)
 
@@ -99,7 +101,7 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         ):
             points = moved if len(moved) else points
             yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
-    points = raster.trim(points, plan.n_asked)
+    points = raster.trim(points, plan.n_dots)
     if plan.weighted and plan.iterations:
         for share, finished in _finish(raster, points):
             points = finished
@@ -110,7 +112,8 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         radii = solved
         if share < 1.0:
             yield snapshot("tone", round(200 + 800 * share), 1000, points)
-    lack = shortfall(raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked)
+    lack = shortfall(raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_dots)
+    lack = replace(lack, notes=lack.notes + too_small_to_print(radii * raster.pixel_mm))
     yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=lack)
 
 
@@ -137,10 +140,8 @@ def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterat
             points = moved if len(moved) else points
             yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
     points = raster.onto_ink(raster.trim(points, None))
-    notes = shortfall(
-        raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked
-    ).notes
-    notes += _off_the_tone(raster, points, radii)
+    notes = shortfall(raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_dots).notes
+    notes += _off_the_tone(raster, points, radii) + too_small_to_print(radii * raster.pixel_mm)
     yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=Shortfall(notes=notes))
 
 
@@ -231,7 +232,7 @@ def raster_for(reference: Reference, plan: Plan) -> PageRaster:
     by_region = plan.sizes == "regions"
     return PageRaster.of(
         reference,
-        plan.n_asked,
+        plan.n_dots,
         plan.size_range_mm,
         bleeds=plan.weighted and not by_region,
         faintest=DROPPED if by_region else None,
@@ -251,7 +252,7 @@ def _first_dots(raster: PageRaster, plan: Plan) -> Iterator[tuple[float, NDArray
         yield 1.0, random_dots(density, plan.seed) - raster.bleed
         return
     place = floyd_steinberg if plan.first_dots == "floyd-steinberg" else hexagonal
-    yield 1.0, _trimmed_to(raster, plan.n_asked, density, place)
+    yield 1.0, _trimmed_to(raster, plan.n_dots, density, place)
 
 
 def _trimmed_to(

@@ -129,12 +129,17 @@ def _draw_pulses(widgets: Widgets, session: Session, changes: dict[str, Any]) ->
 def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
     plan = session.plan
     follows = plan.n_dots is None and plan.size_range_mm is not None
-    shown = session.n_dots if follows else plan.n_dots or _USUAL_DOTS
+    shown = plan.n_dots or session.n_dots or _USUAL_DOTS
     imgui.begin_disabled(follows)
     typed = widgets.number(
         "Number",
         shown,
-        "How many dots. " + ("Follows from the sizes now." if follows else "Met within 1 %."),
+        "How many dots. "
+        + (
+            "Follows from the sizes now."
+            if follows
+            else "Unless you give one, as many as suit the page."
+        ),
     )
     imgui.end_disabled()
     if not follows and typed != shown:
@@ -155,7 +160,6 @@ def _draw_sizes(widgets: Widgets, session: Session, changes: dict[str, Any]) -> 
     if chosen == 0:
         if plan.size_range_mm is not None:
             changes["size_range_mm"] = None
-            changes["n_dots"] = plan.n_dots or _USUAL_DOTS
         return
     low, high = plan.size_range_mm or _USUAL_RANGE_MM
     widgets.label("Radius")
