@@ -1,4 +1,4 @@
-"""Small drawings that hold every kind of content: for the corpus of released files and for fuzzing."""
+"""Small drawings with every kind of content: for the corpus of released files, and for fuzzing."""
 
 from __future__ import annotations
 

@@ -28,8 +28,8 @@ with atheris.instrument_imports(include=["stippler", "zipfile", "json", "tifffil
 OUT = Path("out") / "fuzz"
 _PLAIN = re.compile(r"[\w .-]+", re.ASCII).fullmatch
 _ODD = (
-    None, True, False, 0, 1, -1, 2, 255, 2**31, 2**53, 2**63, -(2**63), 0.0, -0.5, 1.5, 1e-300, 1e300,
-    "", "a", "\ud800", "\0", [], {}, [[]], [None], [0, 0], {"a": 1}, "POLYGON EMPTY",
+    None, True, False, 0, 1, -1, 2, 255, 2**31, 2**53, 2**63, -(2**63), 0.0, -0.5, 1.5, 1e-300,
+    1e300, "", "a", "\ud800", "\0", [], {}, [[]], [None], [0, 0], {"a": 1}, "POLYGON EMPTY",
 )  # fmt: skip
 
 
@@ -87,7 +87,9 @@ def _changed(value, dice):
     if chance < 0.08:
         return {k: v for k, v in value.items() if k != key}
     if chance < 0.16:
-        return {(dice.choice(("0", "1", "a", "-1")) if k == key else k): v for k, v in value.items()}
+        return {
+            (dice.choice(("0", "1", "a", "-1")) if k == key else k): v for k, v in value.items()
+        }
     return {**value, key: _changed(value[key], dice)}
 
 
@@ -120,7 +122,9 @@ def main() -> None:
     standard = [f"-max_len={longest}", "-timeout=5", "-rss_limit_mb=1024"]
     standard += [f"-dict={words}"] if words.stat().st_size else []
     given = [sys.argv[0], *standard, f"-artifact_prefix={OUT / name}/", *options, str(folder)]
-    atheris.Setup(given, once, **({"custom_mutator": changed_json} if name in readers.OF_JSON else {}))
+    atheris.Setup(
+        given, once, **({"custom_mutator": changed_json} if name in readers.OF_JSON else {})
+    )
     atexit.register(lambda: sys.stderr.write(f"faults: {faults.kinds}\n"))
     atheris.Fuzz()
 

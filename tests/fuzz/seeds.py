@@ -65,9 +65,7 @@ def _drawing() -> list[bytes]:
             document["dots"]["arrays"].setdefault(
                 column[0], [column[1], [5, 2] if column[0] == "position_mm" else [5]]
             )
-        raw = b"".join(
-            arrays.to_bytes(getattr(drawing.dots, column)) for column, _, _ in _COLUMNS
-        )
+        raw = b"".join(arrays.to_bytes(getattr(drawing.dots, column)) for column, _, _ in _COLUMNS)
         found.append(structure.to_bytes(document) + b"\0" + raw)
     return found
 
@@ -126,7 +124,8 @@ _SVG = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org
 <rect x="1" y="1" width="5" height="4" rx="1"/><circle cx="3" cy="3" r="2"/><ellipse cx="5" cy="5"
  rx="2" ry="1"/><line x1="0" y1="0" x2="3" y2="4"/><polyline points="0,0 1,1 2,0"/><polygon
  points="0 0 3 0 3 3" transform="matrix(1 0 0 1 5 5)"/><symbol id="s"><rect width="1" height="1"/>
-</symbol><svg x="1" viewBox="0 0 2 2" width="4" height="4"><path d="M0,0 1,1 2,0"/></svg></g></svg>"""
+</symbol><svg x="1" viewBox="0 0 2 2" width="4" height="4"><path
+ d="M0,0 1,1 2,0"/></svg></g></svg>"""
 
 
 def _svg() -> list[bytes]:
