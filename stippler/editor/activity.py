@@ -137,6 +137,8 @@ class Reopening(Job):
         """Hold the drawing until everything is ready for it."""
         self._note(work)
         self._opened = work.document or self._opened
+        if work.note:
+            desk.messages.say(work.note, WARNING)
         return self
 
     def end(self, desk: Desk, outcome: str) -> None:

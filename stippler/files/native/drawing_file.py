@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -64,8 +64,15 @@ def save_drawing(drawing: Drawing, path: str | Path, more: Members | None = None
 
 
 def file_bytes(drawing: Drawing, more: Members | None = None) -> bytes:
-    """Return a drawing's file, with its thumbnail."""
+    """Return a drawing's file, with its thumbnail; steps that lead to another state are left out."""
+    from stippler.files.native import step_file
+
     stream = io.BytesIO()
+    kept = drawing.foreign
+    steps = kept.members.get(step_file.MEMBER)
+    if steps is not None and not step_file.is_of(steps, drawing):
+        others = {name: data for name, data in kept.members.items() if name != step_file.MEMBER}
+        drawing = replace(drawing, foreign=replace(kept, members=others))
     thumbnail = {MEMBER: thumbnail_png(drawing)}
     write_container(stream, {**members_of(drawing, more), **thumbnail}, PROGRAM)
     return stream.getvalue()

@@ -33,7 +33,7 @@ def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
     inside = small & (x >= 0.0) & (x < w) & (y >= 0.0) & (y < h)
     areas = np.where(inside, np.pi * radii**2, 0.0)
     cell = np.where(inside, np.floor(y) * w + np.floor(x), 0.0).astype(np.int64)
-    ink = np.bincount(cell, areas, w * h).reshape(h, w)
+    ink: NDArray[np.float64] = np.bincount(cell, areas, w * h).reshape(h, w)
     if not small.all():
         large = np.flatnonzero(~small)
         ink += draw_ink(np.stack([x[large], y[large]], 1), radii[large], (h, w), _FINER)
