@@ -45,6 +45,8 @@ class App:
         Pixels a unit of an offscreen window, as dense screens of some systems have them.
     recovery : Path, optional
         The folder in which open drawings are kept for the case of a crash; else they are not.
+    backups : Path, optional
+        The folder in which earlier versions are kept; else they are not.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class App:
         offscreen: bool = False,
         ratio: float = 1.0,
         recovery: Path | None = None,
+        backups: Path | None = None,
     ) -> None:
         self._garbage = Garbage()
         kept = preferences or Preferences()
@@ -75,7 +78,9 @@ class App:
             make_ready=partial(make_ready, is_warm=is_warm),
             is_warm=is_warm,
             recovery=recovery,
+            backups=backups,
         )
+        self.session.saving.wishes = kept.saving
         native = False if offscreen else None
         self.editor = Editor(self.window, self.session, kept, native_dialogs=native)
 
@@ -105,6 +110,7 @@ class App:
     def close(self) -> None:
         """End the workers, then the window; a file that is being written is finished first."""
         self.worker.close(_FAREWELL_S)
+        self.session.saving.wait()
         self.exporter.close(None)  # half a file is worse than a window that stays
         self.editor.close()
         self.window.close()
@@ -126,11 +132,15 @@ def edit(
     DisplayError
         If there is no display, or no OpenGL 3.3.
     """
+    from stippler.files.native.backups import backups_root
     from stippler.files.native.recovery import recovery_root
 
     kept = Preferences.load(settings_folder())
     plan, tone, width_mm = kept.begin(plan, tone, width_mm, given)
-    app = App(plan, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root())
+    app = App(
+        plan, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root(),
+        backups=backups_root(),
+    )  # fmt: skip
     try:
         app.step()  # a first frame before the worker takes its share of the processor
         app.open(path)

@@ -34,7 +34,9 @@ class Desk(Protocol):
         """Begin another drawing."""
         ...
 
-    def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
+    def open_document(
+        self, document: Document, file: Path | None, lost: Lost | None, *, is_earlier: bool = False
+    ) -> None:
         """Open a drawing that was kept."""
         ...
 
@@ -127,10 +129,13 @@ class Reopening(Job):
         What it is saved in.
     lost : Lost or None
         What a crash has left of it.
+    is_earlier : bool
+        Whether it is not what the file holds now.
     """
 
     file: Path | None = None
     lost: Lost | None = None
+    is_earlier: bool = False
     _opened: Document | None = None
 
     def take(self, desk: Desk, work: Work) -> Activity:
@@ -144,7 +149,7 @@ class Reopening(Job):
     def end(self, desk: Desk, outcome: str) -> None:
         """Open it; one that could not be read leaves what was open."""
         if self._opened is not None and outcome == "done":
-            desk.open_document(self._opened, self.file, self.lost)
+            desk.open_document(self._opened, self.file, self.lost, is_earlier=self.is_earlier)
 
 
 @dataclass(slots=True)

@@ -6,12 +6,15 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stippler.brushes.brush import Brush
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.editor.view import View
 from stippler.errors import ParameterError
+
+if TYPE_CHECKING:
+    from stippler.editor.session import Session
 
 MEMBER = "editor.json"
 _LARGEST = 1 << 20
@@ -90,3 +93,30 @@ def _brushes(values: list[Any]) -> list[Brush]:
         except ParameterError:
             continue
     return found
+
+
+class DeskState:
+    """Takes over what the file of a drawing just opened tells, and tells what to put into it.
+
+    Parameters
+    ----------
+    session : Session
+        Whose `saving` is told what to put into files.
+    """
+
+    def __init__(self, session: Session, view: View, toolbox: Toolbox) -> None:
+        self._session, self._view, self._toolbox = session, view, toolbox
+        self._seen = session.revision
+        session.saving.tell_desk = self._told
+
+    def follow(self) -> None:
+        """Use what came with another drawing, once it is open."""
+        session = self._session
+        if session.revision == self._seen or session.drawing is None:
+            return
+        self._seen = session.revision
+        data = session.drawing.foreign.members.get(MEMBER, b"")
+        use_state(data, self._view, self._toolbox)
+
+    def _told(self, before: bytes | None) -> dict[str, bytes]:
+        return {MEMBER: to_bytes(state_of(self._view, self._toolbox), before)}

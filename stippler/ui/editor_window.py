@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from stippler.drawing.preview import Preview
 from stippler.editor.batches import parts_of
+from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -100,6 +101,7 @@ class Editor:
         self.shaping = Shaping(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
+        self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
@@ -188,7 +190,7 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
-        self.popups.recovery.close()
+        self.popups.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
@@ -343,6 +345,7 @@ class Editor:
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
+            self._desk.follow()
 
     def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
         """Take an event; what fails is told, and those after it are taken as ever."""

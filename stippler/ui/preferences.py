@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.drawing import MAX_PAGE_MM
+from stippler.editor.saving import MOST_AUTOSAVE_MIN, MOST_BACKUPS, Wishes
 from stippler.settings import put_aside, read_document, write_document, write_text
 from stippler.stippling.plan import Plan
 from stippler.ui.look import Look
@@ -54,6 +55,7 @@ class Preferences:
     look: Look = field(default_factory=Look)
     values: dict[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
+    saving: Wishes = field(default_factory=Wishes)
     closed: list[str] = field(default_factory=list)
     recent: list[Path] = field(default_factory=list)
     ran: list[str] = field(default_factory=list)
@@ -134,6 +136,7 @@ class Preferences:
             "look": {**look, "theme": self.look.theme.name},
             "values": self.values,
             "window": self.place.as_dict(),
+            "saving": asdict(self.saving),
             "closed_panels": self.closed,
             "recent_files": [str(path) for path in self.recent],
             "recent_commands": self.ran,
@@ -146,6 +149,7 @@ class Preferences:
             "look": self._take_look,
             "values": self._take_values,
             "window": self._take_place,
+            "saving": self._take_saving,
             "closed_panels": self._take_closed,
             "recent_files": self._take_recent,
             "recent_commands": self._take_ran,
@@ -192,6 +196,15 @@ class Preferences:
 
     def _take_place(self, data: dict[str, Any]) -> None:
         self.place = Place.from_dict(data)
+
+    def _take_saving(self, data: dict[str, Any]) -> None:
+        first, most = Wishes(), {"n_backups": MOST_BACKUPS, "autosave_min": MOST_AUTOSAVE_MIN}
+        for about in fields(Wishes):
+            usual = getattr(first, about.name)
+            value = _like(usual, data.get(about.name, usual))
+            if about.name in most:
+                value = min(max(value, 0), most[about.name])
+            setattr(self.saving, about.name, value)
 
     def _take_closed(self, names: list[Any]) -> None:
         self.closed = [str(name) for name in names]

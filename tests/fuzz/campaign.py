@@ -20,7 +20,7 @@ SHARES = {
 }  # fmt: skip
 """Of 100 executions: the cheap readers get more, the dear ones a fair part."""
 
-_ROUND = 200_000
+_ROUND = 100_000  # then the process is begun anew: the fuzzer itself keeps some memory each time
 _NUMBER = re.compile(r"^#(\d+)\s", re.MULTILINE)
 _PEAK = re.compile(r"peak_rss_mb:\s*(\d+)")
 

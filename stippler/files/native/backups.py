@@ -1,7 +1,8 @@
-"""Earlier versions of drawings, numbered, in the program's own folder: never beside a person's files.
+"""Earlier versions of drawings, numbered, in the program's own folder.
 
-Each drawing has a folder there. What a save is about to replace is put in it, and what is saved
-by itself now and then; the oldest go when there are more than a person wants.
+A person's folders are left alone. Each drawing has a folder here: what a save is about to replace
+is put in it, and what is saved by itself now and then; the oldest go when there are more than a
+person wants.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def save_drawing(drawing: Drawing, path: str | Path, more: Members | None = None
 
 
 def file_bytes(drawing: Drawing, more: Members | None = None) -> bytes:
-    """Return a drawing's file, with its thumbnail; steps that lead to another state are left out."""
+    """Return a drawing's file, with its thumbnail; steps to another state are left out."""
     from stippler.files.native import step_file
 
     stream = io.BytesIO()

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import io
 import math
+import struct
+import zipfile
+import zlib
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +17,7 @@ from stippler.drawing.drawing import Drawing
 MEMBER = "thumbnail.png"
 SIDE_PX = 256
 _FINER = 4  # samples a pixel, each way
+_MOST_BYTES = 1 << 20
 _MOST_DOTS = 100_000  # of more a part is drawn, each with the ink of those left out
 
 
@@ -33,10 +38,11 @@ def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
     inside = small & (x >= 0.0) & (x < w) & (y >= 0.0) & (y < h)
     areas = np.where(inside, np.pi * radii**2, 0.0)
     cell = np.where(inside, np.floor(y) * w + np.floor(x), 0.0).astype(np.int64)
-    ink: NDArray[np.float64] = np.bincount(cell, areas, w * h).reshape(h, w)
+    ink = np.asarray(np.bincount(cell, areas, w * h), np.float64).reshape(h, w)
     if not small.all():
         large = np.flatnonzero(~small)
-        ink += draw_ink(np.stack([x[large], y[large]], 1), radii[large], (h, w), _FINER)
+        at = np.stack([x[large], y[large]], axis=1)
+        ink = ink + draw_ink(at, radii[large], (h, w), _FINER)
     light = 1.0 - np.minimum(ink, 1.0)
     return np.asarray(np.rint(255.0 * light), np.uint8)
 
@@ -48,3 +54,30 @@ def thumbnail_png(drawing: Drawing) -> bytes:
     stream = io.BytesIO()
     Image.fromarray(thumbnail(drawing)).save(stream, "png")
     return stream.getvalue()
+
+
+def read_thumbnail(path: Path) -> NDArray[np.uint8] | None:
+    """Return the small picture in a drawing's file, reading nothing else; None if there is none.
+
+    It is but a picture: what is damaged in the file is told when it is opened.
+    """
+    from PIL import Image
+
+    try:
+        with zipfile.ZipFile(path) as archive:
+            entry = archive.getinfo(MEMBER)
+            if entry.file_size > _MOST_BYTES or entry.flag_bits & 1:
+                return None
+            data = archive.read(entry)
+        with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
+            if max(image.size) > 4 * SIDE_PX:
+                return None
+            return np.array(image.convert("L"))
+    except _BROKEN:
+        return None
+
+
+_BROKEN = (
+    OSError, ValueError, LookupError, SyntaxError, RuntimeError, EOFError, OverflowError,
+    zipfile.BadZipFile, zlib.error, NotImplementedError, struct.error,
+)  # fmt: skip
