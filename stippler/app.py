@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stippler.editor.garbage_collection import Garbage
+from stippler.editor.log_file import begin_log, end_log, log_path
 from stippler.editor.session import Session
 from stippler.jobs.work import Work, make_ready, stipple_picture
 from stippler.jobs.worker import Worker
@@ -141,6 +142,8 @@ def edit(
         plan, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root(),
         backups=backups_root(),
     )  # fmt: skip
+    log = begin_log(log_path())
+    app.session.messages.log_path = log_path() if log is not None else None
     try:
         app.step()  # a first frame before the worker takes its share of the processor
         app.open(path)
@@ -148,4 +151,5 @@ def edit(
         app.session.keeping.close()  # not after an exception: then the drawing can be recovered
     finally:
         app.close()
+        end_log(log)
     return 0

@@ -50,7 +50,7 @@ class Step:
 
 
 def edit_of(step: Step) -> Edit | None:
-    """Return a step's edit, from disk if it lies there; None if it is lost. The step stays as it is.
+    """Return a step's edit, from disk if it lies there; None if it is lost. The step stays.
 
     Raises
     ------
