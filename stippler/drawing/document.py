@@ -123,7 +123,7 @@ class Document:
 
     def move(self, rows: Rows, position_mm: NDArray[np.float64]) -> None:
         """Move the free ones of some dots, as far as their areas let them."""
-        free = ~self.dots.fixed[rows]
+        free = ~self.dots.is_fixed(rows)
         if not free.all():
             rows, position_mm = rows[free], position_mm[free]
         old = self.dots.position_mm[rows]

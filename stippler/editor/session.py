@@ -44,7 +44,7 @@ Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 class Stipple(Protocol):
     """Makes a job out of a picture, a style, and the picture's reference if it is known."""
 
-    def __call__(self, source: Source, plan: Style, reference: Reference | None) -> Iterator[Work]:
+    def __call__(self, source: Source, style: Style, reference: Reference | None) -> Iterator[Work]:
         """Return the job's results to come."""
         ...
 
@@ -56,14 +56,14 @@ class Session:
     ----------
     worker, exporter : Worker
         Where drawings are made and written; the owner closes them.
-    plan : Style
+    style : Style
         To begin with.
     stipple : callable
         Makes the jobs.
 
     Attributes
     ----------
-    plan : Style
+    style : Style
         As the panels show it; the drawing holds what its dots were asked for with.
     tone, width_mm, adjustment
         Likewise: how the next start takes the picture.
@@ -83,7 +83,7 @@ class Session:
         self,
         worker: Worker[Work],
         exporter: Worker[Path],
-        plan: Style,
+        style: Style,
         *,
         tone: str,
         width_mm: float,
@@ -96,7 +96,7 @@ class Session:
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
         self._make_ready = make_ready
-        self.plan = plan
+        self.style = style
         self.tone, self.width_mm = tone, width_mm
         self.adjustment = NEUTRAL
         self.activity: Activity = Idle()
@@ -158,7 +158,7 @@ class Session:
             self._read = Source(
                 Path(picture.name or "picture"), self.tone, self.width_mm, NEUTRAL, picture.data
             )
-        self.plan = document.drawing.style_of(0)
+        self.style = document.drawing.style_of(0)
         if lost is not None:
             self.messages.say(f"{lost.name} is as it was; save it to keep it")
         if is_earlier:
@@ -176,7 +176,7 @@ class Session:
         self.activity = Idle()
 
     def start(self) -> None:
-        """Stipple the open picture by the plan, from the beginning."""
+        """Stipple the open picture by the style, from the beginning."""
         source = self._asked
         if source is None:
             self.messages.say("open a picture first", WARNING)
@@ -187,7 +187,7 @@ class Session:
         """Begin a drawing on an empty page."""
         self._supersede()
         request = self._worker.start(self._make_ready)
-        self._run(Opening(request, work.PREPARE, None, self.plan, page))
+        self._run(Opening(request, work.PREPARE, None, self.style, page))
 
     def relax(self, iterations: int, *, weighted: bool) -> None:
         """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""
@@ -200,7 +200,7 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
-        spacing = self.plan.spacing
+        spacing = self.style.spacing
         request = self._worker.start(
             lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
         )
@@ -286,10 +286,10 @@ class Session:
             self._end("stopped")
             self.messages.say("stopped; the dots that are there stay")
 
-    def edit_plan(self, **changes: Any) -> bool:
-        """Change fields of the plan; a value outside its range is refused with a line."""
+    def edit_style(self, **changes: Any) -> bool:
+        """Change fields of the style; a value outside its range is refused with a line."""
         try:
-            self.plan = replace(self.plan, **changes)
+            self.style = replace(self.style, **changes)
         except ParameterError as error:
             self.messages.say(str(error), WARNING)
             return False
@@ -458,7 +458,7 @@ class Session:
         if asked is None:
             return False
         style = job.style if isinstance(job, Opening | Making) else self._style
-        return asked != self._as_wanted(asked) or style != self.plan
+        return asked != self._as_wanted(asked) or style != self.style
 
     # --- inside -----------------------------------------------------------------------------
 
@@ -480,7 +480,7 @@ class Session:
     def _begin(self, source: Source) -> None:
         self._supersede()
         known = self.reference if source.is_read_as(self._read) else None
-        style, stipple = self.plan, self._stipple
+        style, stipple = self.style, self._stipple
         request = self._worker.start(lambda: stipple(source, style, known))
         if known is None:
             self._run(Opening(request, work.READ, source, style))
@@ -526,7 +526,7 @@ class Session:
         from stippler.drawing.document import Document
         from stippler.drawing.drawing import Drawing
 
-        drawing = Drawing.blank(page, self.plan)
+        drawing = Drawing.blank(page, self.style)
         drawing.reference = reference
         if source is not None and (self._read is None or self._read.path != source.path):
             self.adjustment = source.adjustment

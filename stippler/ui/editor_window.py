@@ -8,6 +8,7 @@ from collections.abc import Callable
 from imgui_bundle import imgui
 
 from stippler.drawing.preview import Preview
+from stippler.editor.area_acts import AreaActs
 from stippler.editor.batches import parts_of
 from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
@@ -99,6 +100,7 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self._desk = DeskState(session, self.view, self.painting.toolbox)
@@ -134,6 +136,7 @@ class Editor:
             self.session,
             self.painting,
             Selecting(self.session, self.painting),
+            self.area_acts,
             self.pointer,
             self.view,
             self.look,
@@ -332,7 +335,7 @@ class Editor:
         draw_status(self.widgets, self.session, sight, self._rate)
 
     def _previewed(self) -> Preview | None:
-        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        """Return the change that is held in a panel, or that the brush or the style will make."""
         hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None

@@ -13,8 +13,8 @@ from stippler import atomic_write
 from stippler.app import App
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.style import Style
 from stippler.files.native.drawing_file import save_drawing
-from stippler.stippling.plan import Plan
 from stippler.ui.popups.shelf import small_picture
 from stippler.ui.window.scripted_host import Host
 
@@ -33,7 +33,7 @@ def kept(kernels, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
     app = App(
-        Plan(n_dots=300, iterations=4), tone="linear", width_mm=120.0, size=(1000, 700),
+        Style(n_dots=300, iterations=4), tone="linear", width_mm=120.0, size=(1000, 700),
         offscreen=True, recovery=tmp_path / "recovery", backups=tmp_path / "backups",
     )  # fmt: skip
     host = Host(app.window, app.editor, app.step)

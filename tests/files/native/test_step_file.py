@@ -1,5 +1,7 @@
 """The history in a drawing's file: undone to the start and done again, or left aside whole."""
 
+import contextlib
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -134,13 +136,11 @@ def test_changed_bytes_are_refused_or_harmless(at):
     data = bytearray(drawing.foreign.members[MEMBER])
     data[at % len(data)] ^= 0xFF
     fresh = Document(drawing)
-    try:
-        given_ = give_steps(fresh, bytes(data), picture_of_bytes, "here")
-    except DrawingFileError as error:
-        assert "here" in str(error)
-        assert fresh.history.steps == []
-    else:
-        assert given_ == bool(fresh.history.steps) or not given_
+    with contextlib.suppress(DrawingFileError):
+        if give_steps(fresh, bytes(data), picture_of_bytes, "here"):
+            assert fresh.history.steps
+            return
+    assert fresh.history.steps == []
 
 
 @pytest.mark.parametrize(
