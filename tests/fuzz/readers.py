@@ -121,7 +121,12 @@ def _replay(data: bytes) -> None:
         data = data[2 + n :]
     document = Document(_few_dots())
     edit_log.replay(document, found, read_small, SMALL)
-    _save_and_open(document.drawing)
+    while document.undo():
+        pass
+    while document.redo():
+        pass
+    if zlib.crc32(data) % 4 == 0:  # dear
+        _save_and_open(document.drawing)
 
 
 def _few_dots() -> Drawing:

@@ -10,6 +10,7 @@ import numpy as np
 
 from stippler.drawing.document import Document
 from stippler.drawing.edit import Edit
+from stippler.drawing.edit_check import check_edit
 from stippler.drawing.log import ENDED, OPENED, STEP, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
@@ -97,6 +98,8 @@ def replay(
         try:
             entry = entry_of(record, pictures, read_picture, f"record {n_done}", limits)
             if entry is not None:
+                if entry.edit is not None:
+                    check_edit(entry.edit, document)
                 document.replay(entry)
                 in_run = entry.what == OPENED or (in_run and entry.what != ENDED)
         except _WRONG as error:

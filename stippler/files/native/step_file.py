@@ -15,9 +15,10 @@ from dataclasses import replace
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.edit import Edit
+from stippler.drawing.edit_check import check_edit
 from stippler.drawing.foreign import Foreign
 from stippler.drawing.history import Step, edit_of
-from stippler.drawing.log import STEP, Entry
+from stippler.drawing.log import STEP, UNDONE, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
 from stippler.files.native import arrays
@@ -95,8 +96,21 @@ def give_steps(
     steps = list(_steps(document.drawing, data, read_picture, place, limits))
     if n_done > len(steps):
         raise DrawingFileError(f"counts {n_done:,} of {len(steps):,} steps", place, _DO)
+    _check_way(document.drawing, [edit for edit, _ in steps], n_done, place)
     document.history.restore(steps, n_done)
     return True
+
+
+def _check_way(drawing: Drawing, edits: list[Edit], n_done: int, where: str) -> None:
+    """Go back to the start and on to the end, in a copy: each step has to fit the one before."""
+    copy = Document(drawing.snapshot(), 0)
+    way = [edit.inverse() for edit in reversed(edits[:n_done])] + edits
+    for k, edit in enumerate(way):
+        try:
+            check_edit(edit, copy)
+        except ValueError as error:
+            raise DrawingFileError(f"does not fit ({error})", f"{where}, step {k}", _DO) from None
+        copy.replay(Entry(UNDONE, edit))
 
 
 def _head(data: bytes, where: str, limits: Limits) -> tuple[str, int]:
