@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.editor.messages import ERROR, WARNING, Messages
-from stippler.jobs import work
+from stippler.jobs.exporting import Writing, export_drawing
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -64,7 +64,7 @@ class Exports:
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
-        self._writing = work.Writing()
+        self._writing = Writing()
         self.n_written = 0
         self._path = Path()
         self.begin_drawing()
@@ -121,7 +121,7 @@ class Exports:
         inputs: tuple[Path, ...] = (),
         *,
         is_copy: bool = False,
-        job: Callable[[work.Writing], Iterator[Path]] | None = None,
+        job: Callable[[Writing], Iterator[Path]] | None = None,
     ) -> None:
         """Write a drawing as it is now.
 
@@ -137,14 +137,14 @@ class Exports:
             Writes it, in place of what `options` would.
         """
         drawing = document.drawing.snapshot() if job is None else document.drawing
-        self._writing = writing = work.Writing()
+        self._writing = writing = Writing()
         self.failed = None
         self._path = path
         self._request = self._worker.start(
             lambda: (
                 job(writing)
                 if job is not None
-                else work.export_drawing(drawing, path, options, inputs, writing)
+                else export_drawing(drawing, path, options, inputs, writing)
             )
         )
         self._mark, self._is_copy = state_mark(document), is_copy

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from stippler.editor.exports import Exports, state_mark
 from stippler.editor.messages import ERROR, Messages
-from stippler.jobs import work
+from stippler.jobs.exporting import Writing, save_drawing
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -83,8 +83,8 @@ class Saving:
         backups = self._backups_of(path)
         most = self.wishes.n_backups
 
-        def job(writing: work.Writing) -> Iterator[Path]:
-            return work.save_drawing(complete, path, backups, most, writing)
+        def job(writing: Writing) -> Iterator[Path]:
+            return save_drawing(complete, path, backups, most, writing)
 
         self._exports.start(document, path, {}, is_copy=is_copy, job=job)
 

@@ -21,6 +21,7 @@ from stippler.editor.events import (
 )
 from stippler.editor.hands import Hands
 from stippler.editor.keymap import load_keys
+from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.rates import FrameRate
@@ -41,6 +42,7 @@ from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
@@ -100,6 +102,7 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.lines = Lines(session, self.painting)
         self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
@@ -116,6 +119,9 @@ class Editor:
             },
             kept.closed,
         )
+        self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
+            "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
+        }
         self.lens_key = LensKey(self.look)
         self.menu = MenuBar()
         self.commands = self.popups.commands = commands_for(self._parts())
@@ -136,6 +142,7 @@ class Editor:
             self.session,
             self.painting,
             Selecting(self.session, self.painting),
+            self.lines,
             self.area_acts,
             self.pointer,
             self.view,
@@ -282,6 +289,9 @@ class Editor:
     def _draw_tool(self) -> None:
         n_selected = self.painting.n_selected
         draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected)
+        if self.painting.toolbox.name in self._of_tools:
+            self.widgets.rule()
+            self._of_tools[self.painting.toolbox.name]()
 
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
