@@ -20,7 +20,13 @@ SHARES = {
 }  # fmt: skip
 """Of 100 executions: the cheap readers get more, the dear ones a fair part."""
 
-_ROUND = 100_000  # then the process is begun anew: the fuzzer itself keeps some memory each time
+_ROUNDS = {
+    "structure": 1_000_000, "arrays": 1_000_000, "journal": 1_000_000, "container": 500_000,
+    "style": 300_000, "geojson": 300_000,
+}  # fmt: skip
+_ROUND = 100_000
+"""Executions of one process; the fuzzer itself keeps some memory of each, so others follow."""
+
 _NUMBER = re.compile(r"^#(\d+)\s", re.MULTILINE)
 _PEAK = re.compile(r"peak_rss_mb:\s*(\d+)")
 
@@ -54,11 +60,12 @@ def main() -> None:
     """Run all."""
     millions = float(sys.argv[1]) if len(sys.argv) > 1 else 1.0
     names = sys.argv[2:] or list(SHARES)
-    left = {name: round(millions * 1e6 * SHARES[name] / sum(SHARES.values())) for name in names}
+    total = sum(SHARES[name] for name in names)
+    left = {name: round(millions * 1e6 * SHARES[name] / total) for name in names}
     while any(left.values()):
         for name in names:
             if left[name]:
-                n, seconds, peak_mb = run(name, min(left[name], _ROUND))
+                n, seconds, peak_mb = run(name, min(left[name], _ROUNDS.get(name, _ROUND)))
                 left[name] = max(left[name] - n, 0)
                 note(name, n, seconds, peak_mb)
                 faults = sorted(path.name for path in (OUT / name / "faults").glob("*[!t]"))

@@ -11,6 +11,7 @@ import hashlib
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
@@ -21,8 +22,8 @@ from stippler.drawing.history import Step, edit_of
 from stippler.drawing.log import STEP, UNDONE, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
-from stippler.files.native import arrays
-from stippler.files.native.drawing_file import ReadPicture, members_of
+from stippler.files.native import arrays, structure
+from stippler.files.native.drawing_file import STRUCTURE, ReadPicture, members_of
 from stippler.files.native.edit_log import entry_of, of_entry, of_picture
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
 
@@ -38,11 +39,22 @@ def state_of(drawing: Drawing) -> str:
     """Return what tells a drawing's state from all others."""
     fields, values = drawing.foreign.document, drawing.foreign.fields
     members = members_of(replace(drawing, foreign=Foreign(fields, values)))
+    document = structure.from_bytes(members.pop(STRUCTURE), STRUCTURE)
+    members[STRUCTURE] = structure.to_bytes(_plain(document))
     mixed = hashlib.sha256()
     for name in sorted(members):
         mixed.update(f"{name} {len(members[name])} ".encode())
         mixed.update(members[name])
     return mixed.hexdigest()
+
+
+def _plain(value: Any) -> Any:
+    """Return JSON whose numbers are written alike, whole or not: 9 and 9.0 are one state."""
+    if isinstance(value, dict):
+        return {key: _plain(inside) for key, inside in sorted(value.items())}
+    if isinstance(value, list):
+        return [_plain(inside) for inside in value]
+    return float(value) if type(value) is int else value
 
 
 def steps_to_bytes(steps: Sequence[Step], n_done: int, drawing: Drawing) -> bytes:
