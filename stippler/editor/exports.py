@@ -59,14 +59,17 @@ class Exports:
         Whether the drawing was opened as another than its file holds.
     failed : FailedSave or None
         The last save, if it failed and nobody has been asked yet what to do.
+    writing : Path or None
+        The file that is being written, or was last.
     """
 
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
         self._writing = Writing()
+        self._expected_bytes = 0
+        self.writing: Path | None = None
         self.n_written = 0
-        self._path = Path()
         self.begin_drawing()
 
     @property
@@ -78,6 +81,18 @@ class Exports:
     def n_bytes(self) -> int:
         """How much of the file has been written."""
         return self._writing.n_bytes
+
+    @property
+    def share(self) -> float | None:
+        """How much of the file is there; None where that is not known."""
+        if not self._expected_bytes or not self.n_bytes:
+            return None
+        return min(self.n_bytes / self._expected_bytes, 1.0)
+
+    @property
+    def is_given_up(self) -> bool:
+        """Whether the writing ends at its next piece."""
+        return self._writing.given_up
 
     def give_up(self) -> None:
         """End the writing at its next piece; what stood there before stays."""
@@ -121,6 +136,7 @@ class Exports:
         inputs: tuple[Path, ...] = (),
         *,
         is_copy: bool = False,
+        expected_bytes: int = 0,
         job: Callable[[Writing], Iterator[Path]] | None = None,
     ) -> None:
         """Write a drawing as it is now.
@@ -133,13 +149,15 @@ class Exports:
             Whether the drawing stays that of the file it was saved in before.
         inputs : paths
             The files that the drawing was made from, which are never written over.
+        expected_bytes : int
+            About how large the file will be; 0 is not known.
         job : callable, optional
             Writes it, in place of what `options` would.
         """
+        self.writing, self._expected_bytes = path, expected_bytes
         drawing = document.drawing.snapshot() if job is None else document.drawing
         self._writing = writing = Writing()
         self.failed = None
-        self._path = path
         self._request = self._worker.start(
             lambda: (
                 job(writing)
@@ -169,11 +187,13 @@ class Exports:
         if update.request_id != self._request or not update.ended:
             return None
         self._request = None
-        if update.failure is not None:
+        if update.failure is not None and self._writing.given_up:
+            self._messages.say(str(update.failure))
+        elif update.failure is not None:
             self._messages.say(str(update.failure), ERROR, update.failure.__cause__)
-            given_up = self._writing.given_up
-            if self._mark is not _NEVER and not given_up and self._path.suffix.lower() == SAVED:
-                self.failed = FailedSave(self._path, str(update.failure), self._is_copy)
+            path, is_open = self.writing, self._mark is not _NEVER
+            if is_open and path is not None and path.suffix.lower() == SAVED:
+                self.failed = FailedSave(path, str(update.failure), self._is_copy)
         elif update.ended == "finished" and update.result is not None:
             self.n_written += 1
             if self._mark is not _NEVER:  # else another drawing has been opened meanwhile

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -273,8 +273,30 @@ class Session(SessionState):
             return False
         return True
 
-    def export(self, path: Path, dpi: float) -> None:
-        """Write the drawing to a file, beside whatever else is going on."""
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the drawing is made from, which are never written over."""
+        return tuple(source.path for source in (self.source, self._asked) if source)
+
+    def export(
+        self,
+        path: Path,
+        dpi: float,
+        options: Mapping[str, Any] | None = None,
+        *,
+        expected_bytes: int = 0,
+    ) -> None:
+        """Write the drawing to a file, beside whatever else is going on.
+
+        Parameters
+        ----------
+        dpi : float
+            Where the options give none.
+        options : mapping, optional
+            Of the format; see `stippler.export.save`.
+        expected_bytes : int
+            About how large it will be, to tell how far it is.
+        """
         if self.exporting:
             self.messages.say("the last export is still being written", WARNING)
             return
@@ -284,8 +306,8 @@ class Session(SessionState):
         if not self.n_dots:
             self.messages.say("there are no dots to export", WARNING)
             return
-        inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
+        values = {"dpi": dpi} if options is None else options
+        self.exports.start(self.document, path, values, self.inputs, expected_bytes=expected_bytes)
 
     def save(self, path: Path, *, is_copy: bool = False) -> None:
         """Write all of the drawing to a file of its own, to go on with later.

@@ -54,6 +54,7 @@ from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.strip import draw_tools
 from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
+from stippler.ui.panels.writing import WritingNotice
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
 from stippler.ui.preferences import Preferences
@@ -123,7 +124,7 @@ class Editor:
             "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
         }
         self.lens_key = LensKey(self.look)
-        self.menu = MenuBar()
+        self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
@@ -175,7 +176,7 @@ class Editor:
         if events:
             self._schedule.note_input(began)
             self._may_have_changed = True
-        if self.session.poll():
+        if self.session.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -183,7 +184,7 @@ class Editor:
         if not self._schedule.due(began):
             return False
         self._frame(events, began)
-        moving = self.view.moving or self.painting.toolbox.is_timed
+        moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.exporting.moves
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
@@ -275,6 +276,8 @@ class Editor:
             draw_invitation(self.widgets, self.commands, recent(), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
+        exports = self.session.exports
+        self._guarded("the writing", lambda: self._writing.draw(self.widgets, exports, area))
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
@@ -448,5 +451,5 @@ class Editor:
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
         self._keep_soon(now)
-        if self.popups.dialogs.waiting:
+        if self.popups.dialogs.waiting or self.session.exporting:
             self._schedule.wake_at(now + _ANSWER_S)

@@ -12,6 +12,7 @@ from stippler.editor.session import Session
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
 from stippler.ui.popups.context import ContextPalette
+from stippler.ui.popups.export_dialog import ExportDialog
 from stippler.ui.popups.file_dialogs import Dialogs
 from stippler.ui.popups.filing import Filing
 from stippler.ui.popups.new_page import NewPage
@@ -43,6 +44,10 @@ class Popups:
         self._session, self._kept = session, kept
         self.dialogs = Dialogs(use_native=use_native)
         self.filing = Filing(session, self.dialogs, kept, window.end)
+        self.exporting = ExportDialog(
+            window, session, self.dialogs, self.filing.write, self.filing.show_calibration_sheet
+        )
+        self.filing.ask_export = self.exporting.ask
         self.recovery = RecoveryWindow(
             session.keeping.root, session, window.ctx, window.wake, self.filing.guard.then
         )
@@ -68,6 +73,7 @@ class Popups:
         """Whether one has the keyboard that lets nothing else have it."""
         return (
             self.dialogs.is_open
+            or self.exporting.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
             or self.recovery.is_open
@@ -93,6 +99,7 @@ class Popups:
         assert commands is not None
         guarded("the preferences", lambda: self.preferences.draw(widgets, commands))
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
+        guarded("the export", lambda: self.exporting.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
         guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the recent files", lambda: self.recent.draw(widgets))
@@ -105,7 +112,7 @@ class Popups:
 
     def close(self) -> None:
         """Free every GL object."""
-        for popup in (self.recovery, self.recent, self.earlier):
+        for popup in (self.recovery, self.recent, self.earlier, self.exporting):
             popup.close()
 
     def _keep_keys(self) -> None:
