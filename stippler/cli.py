@@ -140,6 +140,7 @@ def render(
         from stippler.progress import stages_shown
 
         check_size(output, _page_of(at, asked.width_mm), form, **exports)
+        _warn_of_memory(file, at, asked)
         with stages_shown() as show:
             from stippler.api import draw
 
@@ -317,6 +318,17 @@ def _page_of(picture: Path, width_mm: float) -> Page:
 
     columns, rows = size_of_picture(picture)
     return Page(width_mm, width_mm * rows / columns)
+
+
+def _warn_of_memory(file: Path, picture: Path, asked: Asked) -> None:
+    """Say so before a job that will hardly fit into memory."""
+    from stippler.drawing.style import DEFAULT_DOTS
+    from stippler.files.read.picture import size_of_picture
+    from stippler.jobs.preflight import warning
+
+    columns, rows = size_of_picture(picture)
+    if text := warning("stipple", asked.style.n_dots or DEFAULT_DOTS, columns * rows):
+        _note(file, text)
 
 
 def _note(file: Path, note: str) -> None:
