@@ -133,7 +133,7 @@ def render(
 
     with at_hand(file) as at:
         if is_drawing(at):
-            _write_again(at, output, form, exports, asked)
+            _write_again(file, at, output, form, exports, asked)
             return
         _check_page(asked)
         from stippler.export import check_size
@@ -155,19 +155,20 @@ def render(
 
 
 def _write_again(
-    file: Path, output: Path, form: str, exports: dict[str, Any], asked: Asked
+    file: Path, at: Path, output: Path, form: str, exports: dict[str, Any], asked: Asked
 ) -> None:
-    """Write a drawing to a file of another kind."""
+    """Write a drawing, which can be read `at` a place, to a file of another kind."""
     if asked.options:
+        name = "standard input" if str(file) == STDIN else shown(file)
         raise ParameterError(
-            f"is of a picture, and {shown(file)} is a drawing already",
+            f"is of a picture, and {name} is a drawing already",
             min(asked.options.values()),
             "leave it out",
         )
     from stippler.api import open as open_drawing
 
-    drawing = open_drawing(file)
-    drawing.inputs = (file,)
+    drawing = open_drawing(at)
+    drawing.inputs = (at,)
     drawing.save(output, form=form, **exports)
     stops.written = True
 
