@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing import records
 from stippler.drawing.area import PAGE_AREA, Area
 from stippler.editor.area_choice import AreaChoice
+from stippler.editor.area_jobs import AreaJobs
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.session import Session
-from stippler.errors import GeometryError
+from stippler.errors import GeometryError, StipplerError
+from stippler.names import shown
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -27,12 +30,14 @@ class AreaActs:
 
     Attributes
     ----------
+    jobs : AreaJobs
+        What takes longer than a frame.
     tolerance_mm : float
         What `simplify` may move a border by.
     """
 
-    def __init__(self, session: Session, painting: Painting) -> None:
-        self._session, self._painting = session, painting
+    def __init__(self, session: Session, painting: Painting, jobs: AreaJobs) -> None:
+        self._session, self._painting, self.jobs = session, painting, jobs
         self.tolerance_mm = 0.2
 
     @property
@@ -48,11 +53,21 @@ class AreaActs:
         free = not self._painting.is_busy
         return session.document if ready and free else None
 
+    @property
+    def any_document(self) -> Document | None:
+        """The open document, if only to look at."""
+        return self._session.document
+
     def listed(self) -> list[tuple[int, Area]]:
         """Return the areas in the order of the list, the page last."""
         if self._session.document is None:
             return []
         return in_order(self._session.document.drawing.areas)
+
+    @property
+    def n_listed(self) -> int:
+        """How many areas there are."""
+        return len(self._session.document.drawing.areas) if self._session.document else 0
 
     @property
     def n_chosen(self) -> int:
@@ -133,6 +148,67 @@ class AreaActs:
         for note in outcome.notes:
             self._session.messages.say(note, INFO)
         return True
+
+    # --- files --------------------------------------------------------------------------------
+
+    def import_outlines(self, path: Path) -> None:
+        """Make areas of the outlines in a file, beside everything else, as one step."""
+        from stippler.drawing.area_edits import current_map, held_areas
+        from stippler.editor.area_files import Imported, import_job
+
+        document = self.document
+        if document is None:
+            self._warn("begin a page, or open a picture, before outlines are imported")
+            return
+        before, page = current_map(document), document.drawing.page
+        size_mm, held = (page.width_mm, page.height_mm), held_areas(document.drawing)
+
+        def take(found: Imported) -> None:
+            self._take_map(document, "Import areas", found.before, found.map, found.names)
+            for note in found.notes:
+                self._session.messages.say(note, INFO)
+
+        job = import_job(path, before, size_mm, held)
+        self.jobs.start(f"reading {shown(path.name)}", job, take)
+
+    def export_outlines(self, path: Path) -> None:
+        """Write the outlines of all areas to a file."""
+        from stippler.editor.area_files import write_areas
+
+        document = self._session.document
+        if document is None:
+            return
+        try:
+            n = write_areas(document.drawing, path)
+        except StipplerError as error:
+            self._warn(str(error))
+            return
+        self._session.messages.say(f"{n} areas written to {shown(path.name)}", INFO)
+
+    def _take_map(
+        self,
+        of: Document,
+        label: str,
+        before: PlanarMap,
+        after: PlanarMap,
+        names: Mapping[int, str],
+    ) -> None:
+        """Use a map that was worked out meanwhile, if the areas are still those it began with."""
+        from stippler.drawing.area_edits import current_map, edit_areas
+        from stippler.drawing.planar.edits import Outcome
+
+        if self.document is not of or current_map(of) is not before:
+            self._warn("the areas have changed meanwhile; do it once more")
+            return
+        made = tuple(k for k in after.areas if k not in set(before.areas))
+        gone = tuple(k for k in before.areas if k not in set(after.areas))
+        outcome = Outcome(after, made, gone)
+        try:
+            edit_areas(of, label, lambda _: outcome, names=names)
+        except GeometryError as error:
+            self._warn(str(error))
+            return
+        self.choice.choose(made)
 
     # --- what an area is called, and whether it is locked, hidden ------------------------------
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
+from stippler.editor.area_files import READ, WRITTEN
 from stippler.editor.commands import CTRL, CTRL_SHIFT, Command, Key
 from stippler.ui.actions.parts import Parts
 
@@ -38,3 +40,23 @@ def area_commands(parts: Parts) -> Iterator[Command]:
         ("down", "Area down in the list", "Down", "", lambda: acts.move_up(-1), (), has_some),
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
+    yield from _file_commands(parts)
+
+
+def _file_commands(parts: Parts) -> Iterator[Command]:
+    acts, dialogs, session = parts.area_acts, parts.popups.dialogs, parts.session
+
+    def ask_import() -> None:
+        dialogs.ask_file("Import areas", "Outlines", Path.cwd(), READ, acts.import_outlines)
+
+    def ask_export() -> None:
+        first = session.exports.file or Path("areas")
+        dialogs.ask_outlines(first.with_suffix(".svg"), WRITTEN, acts.export_outlines)
+
+    for name, short, tip, run, can in (
+        ("import", "Import", "outlines of an SVG or GeoJSON file become areas.",
+         ask_import, lambda: acts.document is not None),
+        ("export", "Export", "outlines of all areas, as SVG paths or GeoJSON.",
+         ask_export, lambda: acts.n_listed > 0),
+    ):  # fmt: skip
+        yield Command(f"area.{name}", f"{short} areas", run, can=can, short=short, tip=tip)
