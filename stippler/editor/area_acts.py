@@ -30,6 +30,7 @@ class AreaActs:
 
     Attributes
     ----------
+    session : Session
     jobs : AreaJobs
         What takes longer than a frame.
     tolerance_mm : float
@@ -37,7 +38,7 @@ class AreaActs:
     """
 
     def __init__(self, session: Session, painting: Painting, jobs: AreaJobs) -> None:
-        self._session, self._painting, self.jobs = session, painting, jobs
+        self.session, self._painting, self.jobs = session, painting, jobs
         self.tolerance_mm = 0.2
 
     @property
@@ -48,7 +49,7 @@ class AreaActs:
     @property
     def document(self) -> Document | None:
         """The open document, if it can be edited now."""
-        session = self._session
+        session = self.session
         ready = session.document is not None and session.paintable
         free = not self._painting.is_busy
         return session.document if ready and free else None
@@ -56,23 +57,23 @@ class AreaActs:
     @property
     def any_document(self) -> Document | None:
         """The open document, if only to look at."""
-        return self._session.document
+        return self.session.document
 
     def listed(self) -> list[tuple[int, Area]]:
         """Return the areas in the order of the list, the page last."""
-        if self._session.document is None:
+        if self.session.document is None:
             return []
-        return in_order(self._session.document.drawing.areas)
+        return in_order(self.session.document.drawing.areas)
 
     @property
     def n_listed(self) -> int:
         """How many areas there are."""
-        return len(self._session.document.drawing.areas) if self._session.document else 0
+        return len(self.session.document.drawing.areas) if self.session.document else 0
 
     @property
     def n_chosen(self) -> int:
         """How many areas are chosen, the page's not counted."""
-        document = self._session.document
+        document = self.session.document
         return len(self.choice.drawn(document)) if document is not None else 0
 
     # --- borders ------------------------------------------------------------------------------
@@ -146,8 +147,52 @@ class AreaActs:
             self._warn(str(error))
             return False
         for note in outcome.notes:
-            self._session.messages.say(note, INFO)
+            self.session.messages.say(note, INFO)
         return True
+
+    # --- processing ---------------------------------------------------------------------------
+
+    def process(self) -> None:
+        """Stipple the chosen areas anew, one after the other, each in its style."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.process(self.session, self._all_chosen())
+
+    def relax(self) -> None:
+        """Relax the chosen areas."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.relax(self.session, self._all_chosen())
+
+    def fill(self) -> None:
+        """Add dots to the chosen areas."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.fill(self.session, self._all_chosen())
+
+    def resize(self, percent: float) -> None:
+        """Make the dots of the chosen areas larger or smaller."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.resize(self.session, self._all_chosen(), percent)
+
+    def clear(self) -> None:
+        """Remove the dots of the chosen areas."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.clear(self.session, self._all_chosen())
+
+    def _ready(self) -> bool:
+        """Return whether areas are chosen and nothing is held; say what is missing."""
+        if self._all_chosen() and not self._painting.is_busy:
+            return True
+        self._warn("choose an area first, in the list or on the canvas with the tool Nodes")
+        return False
 
     # --- files --------------------------------------------------------------------------------
 
@@ -166,7 +211,7 @@ class AreaActs:
         def take(found: Imported) -> None:
             self._take_map(document, "Import areas", found.before, found.map, found.names)
             for note in found.notes:
-                self._session.messages.say(note, INFO)
+                self.session.messages.say(note, INFO)
 
         job = import_job(path, before, size_mm, held)
         self.jobs.start(f"reading {shown(path.name)}", job, take)
@@ -175,7 +220,7 @@ class AreaActs:
         """Write the outlines of all areas to a file."""
         from stippler.editor.area_files import write_areas
 
-        document = self._session.document
+        document = self.session.document
         if document is None:
             return
         try:
@@ -183,7 +228,7 @@ class AreaActs:
         except StipplerError as error:
             self._warn(str(error))
             return
-        self._session.messages.say(f"{n} areas written to {shown(path.name)}", INFO)
+        self.session.messages.say(f"{n} areas written to {shown(path.name)}", INFO)
 
     def _take_map(
         self,
@@ -279,15 +324,15 @@ class AreaActs:
     # --- inside -------------------------------------------------------------------------------
 
     def _chosen(self) -> list[int]:
-        document = self._session.document
+        document = self.session.document
         return self.choice.drawn(document) if document is not None else []
 
     def _all_chosen(self) -> list[int]:
-        document = self._session.document
+        document = self.session.document
         return self.choice.alive(document) if document is not None else []
 
     def _warn(self, text: str) -> None:
-        self._session.messages.say(text, WARNING)
+        self.session.messages.say(text, WARNING)
 
 
 def in_order(areas: dict[int, Area]) -> list[tuple[int, Area]]:

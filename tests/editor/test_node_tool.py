@@ -85,7 +85,7 @@ def test_a_node_is_added_smoothed_bent_and_removed(hands):
     desk = hands.toolbox.desk(hands.document, lambda x, y: (x, y), 10.0)
     hands.tool.bend(desk, smooth=True)
     hands.check()
-    (held,) = hands.tool.held
+    held = hands.tool.held[0]
     ((k, i),) = held.nodes
     assert is_smooth(held.index.paths[k], i)
     handle = handles_at(held.index.paths[k], i)["out"]

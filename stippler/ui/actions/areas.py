@@ -40,7 +40,35 @@ def area_commands(parts: Parts) -> Iterator[Command]:
         ("down", "Area down in the list", "Down", "", lambda: acts.move_up(-1), (), has_some),
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
+    yield from _work_commands(parts)
     yield from _file_commands(parts)
+
+
+def _work_commands(parts: Parts) -> Iterator[Command]:
+    acts, session = parts.area_acts, parts.session
+
+    def can_work() -> bool:
+        return bool(acts.choice.ids) and session.paintable
+
+    def can_stipple() -> bool:
+        return can_work() and session.reference is not None
+
+    for name, label, short, tip, run, keys, can in (
+        ("stipple", "Stipple areas", "Stipple",
+         "makes the dots of the chosen areas anew, one area after the other, each in its style; "
+         "all others stay as they are.",
+         acts.process, (Key("enter", CTRL_SHIFT),), can_stipple),
+        ("relax", "Relax areas", "Relax", "evens out the dots of the chosen areas alone.",
+         acts.relax, (Key("r", CTRL_SHIFT),), can_work),
+        ("fill", "Fill areas", "Fill", "adds dots to each chosen area.", acts.fill, (), can_work),
+        ("clear", "Clear areas", "Clear", "removes the dots of the chosen areas, but fixed ones.",
+         acts.clear, (), can_work),
+        ("enlarge", "Enlarge the dots of areas", "Larger", "by 10 percent.",
+         lambda: acts.resize(110.0), (), can_work),
+        ("reduce", "Reduce the dots of areas", "Smaller", "by 10 percent.",
+         lambda: acts.resize(100.0 / 1.1), (), can_work),
+    ):  # fmt: skip
+        yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
 
 
 def _file_commands(parts: Parts) -> Iterator[Command]:

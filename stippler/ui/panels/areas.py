@@ -8,12 +8,13 @@ from stippler.drawing.area import PAGE_AREA, Area
 from stippler.editor.area_acts import AreaActs, counts
 from stippler.editor.commands import Commands
 from stippler.editor.events import Mods
+from stippler.ui.panels.area_work import buttons, draw_area_work
 from stippler.ui.widgets import Widgets
 
 _LOCKED, _FREE = "\uf023", "\uf3c1"
 _SEEN, _HIDDEN, _SOLO = "\uf06e", "\uf070", "\uf192"
 _UP, _DOWN = "\uf062", "\uf063"
-_ROWS = 8.5
+_ROWS = 7.5
 _DRAGGED = "area"
 
 
@@ -34,8 +35,8 @@ class AreasPanel:
         if not rows:
             widgets.caption("Open a picture or begin a page; then draw areas with the tool Area.")
             return
-        height = min(len(rows), _ROWS) * (imgui.get_frame_height() + 4.0 * widgets.scale)
-        imgui.begin_child("##areas", (0.0, height + 6.0 * widgets.scale))
+        row = imgui.get_frame_height() + imgui.get_style().item_spacing.y
+        imgui.begin_child("##areas", (0.0, min(len(rows), _ROWS) * row))
         imgui.begin_disabled(document is None)
         for place, (k, area) in enumerate(rows):
             self._draw_row(widgets, place, k, area)
@@ -47,6 +48,8 @@ class AreasPanel:
             )
         self._draw_order(widgets, commands)
         self._draw_styles(widgets)
+        widgets.rule()
+        draw_area_work(widgets, self._acts, commands)
         widgets.rule()
         self._draw_borders(widgets, commands)
         widgets.rule()
@@ -201,14 +204,14 @@ class AreasPanel:
             self._acts.give_style(ids, keys[chosen])
 
     def _draw_borders(self, widgets: Widgets, commands: Commands) -> None:
-        _buttons(widgets, commands, ("area.unite", "area.remove", "area.smooth", "area.simplify"))
+        buttons(widgets, commands, ("area.unite", "area.remove", "area.smooth", "area.simplify"))
         acts = self._acts
         acts.tolerance_mm = min(max(widgets.length(
             "Tolerance", acts.tolerance_mm, "How far Simplify may move a border."
         ), 0.0), 50.0)  # fmt: skip
 
     def _draw_files(self, widgets: Widgets, commands: Commands) -> None:
-        _buttons(widgets, commands, ("area.import", "area.export"))
+        buttons(widgets, commands, ("area.import", "area.export"))
         if self._jobs.busy:
             share = self._jobs.share
             widgets.progress(share if share >= 0 else -imgui.get_time(), self._jobs.label)
@@ -229,15 +232,3 @@ def _sign(widgets: Widgets, name: str, icon: str, tip: str, *, is_on: bool) -> b
     widgets.note(name)
     widgets.tip(tip)
     return pressed
-
-
-def _buttons(widgets: Widgets, commands: Commands, names: tuple[str, ...]) -> None:
-    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
-    for i, name in enumerate(names):
-        command = commands[name]
-        if i % 2:
-            imgui.same_line(0.0, widgets.gap)
-        if widgets.button(
-            command.short, command.explained, name=name, width=width, enabled=command.enabled
-        ):
-            command.run()
