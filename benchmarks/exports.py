@@ -136,13 +136,14 @@ def _estimates() -> list[Figure]:
     """Size and time that the dialog foretells, over those of the file."""
     results = []
     page = drawing(100_000)
-    for name, options in (
+    cases: tuple[tuple[str, dict[str, object]], ...] = (
         ("svg", {}),
         ("pdf", {}),
         ("tif", {}),
         ("png", {"dpi": 600}),
         ("csv", {}),
-    ):
+    )
+    for name, options in cases:
         made = format_named(name)
         values = values_for(made, options)
         what = page if made.is_data else plate_of(page, values)

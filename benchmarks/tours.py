@@ -22,10 +22,10 @@ Order = NDArray[np.int64]
 
 def two_opt(points: Points) -> Order:
     """Return a closed tour that no exchange of two steps among near points shortens."""
-    _, near = cKDTree(points).query(points, k=11)
-    order = _nearest_first(points, near[:, 1:].astype(np.int64))
+    near = np.asarray(cKDTree(points).query(points, k=11)[1])[:, 1:].astype(np.int64)
+    order = _nearest_first(points, near)
     run: Callable[..., None] = _exchange
-    run(points, near[:, 1:].astype(np.int64), order)
+    run(points, near, order)
     return order
 
 
@@ -94,7 +94,10 @@ def or_tools(points: Points, limit_s: int) -> Order | None:
     """Return what guided local search finds in a time; None without OR-tools."""
     if importlib.util.find_spec("ortools") is None:
         return None
-    from ortools.constraint_solver import pywrapcp, routing_enums_pb2
+    from ortools.constraint_solver import (  # type: ignore[import-untyped,unused-ignore]
+        pywrapcp,
+        routing_enums_pb2,
+    )
 
     away = np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1))
     manager = pywrapcp.RoutingIndexManager(len(points), 1, 0)
