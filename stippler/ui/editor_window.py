@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 
@@ -10,6 +11,7 @@ from imgui_bundle import imgui
 from stippler.drawing.preview import Preview
 from stippler.editor.area_acts import AreaActs
 from stippler.editor.batches import parts_of
+from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -106,6 +108,7 @@ class Editor:
         self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
+        self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
@@ -199,11 +202,21 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
-        self.popups.recovery.close()
-        self.popups.exporting.close()
+        self.popups.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
+
+    def renew_graphics(self) -> None:
+        """Make GL's context and all that is in it anew: the drawing never lives there alone."""
+        with contextlib.suppress(Exception):  # a lost context may refuse anything
+            self.canvas.close()
+            self._samples.close()
+        self.gui.leave()
+        self._window.renew()
+        self.gui.join()
+        self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self.popups.recovery.renew(self._window.ctx)
 
     # --- one frame --------------------------------------------------------------------------
 
@@ -230,6 +243,9 @@ class Editor:
             screen.use()
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
+        if self._window.is_lost:
+            self.renew_graphics()
+            self.session.messages.say("the graphics driver was reset; nothing is lost", WARNING)
         self.lens_key.note_frame(self._window.now_s)
         name, changed = self.session.name, "*" if self.session.unsaved else ""
         self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
@@ -360,6 +376,7 @@ class Editor:
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
+            self._desk.follow()
 
     def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
         """Take an event; what fails is told, and those after it are taken as ever."""

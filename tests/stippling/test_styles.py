@@ -49,8 +49,9 @@ def test_a_grid_has_its_distances_direction_and_number_and_keeps_the_tone(spacin
     fold = 60.0 if spacing == "hexagonal" else 90.0
     assert np.allclose(np.mod(along - angle + fold / 2, fold), fold / 2, atol=1e-3)
     error = measure_tone(position * 4.0, radius * 4.0, field().darkness)
-    assert abs(error.bias) < 0.01
-    assert error.tone_rmse < 0.03
+    assert abs(error.bias) < 0.002
+    assert error.tone_rmse < 0.05  # cells are coarse beside the ramp
+    assert error.gain == pytest.approx(1.0, abs=0.08)
 
 
 @pytest.mark.parametrize("angle", [0.0, 35.0, 90.0])
