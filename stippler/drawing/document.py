@@ -18,7 +18,6 @@ from stippler.drawing.history import BUDGET_BYTES, History, Step
 from stippler.drawing.index import DotIndex
 from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry, Follower
 from stippler.drawing.partition import NOWHERE, Partition
-from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.reference import Reference
 from stippler.drawing.run import Run
@@ -358,7 +357,7 @@ class Document:
         if keeps_fixed:
             gives_way &= ~self.dots.fixed
         replaced = np.flatnonzero(gives_way)
-        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(style.pen))
+        self._draft = Draft(self.drawing, self._store, label, area, replaced, style)
         i = self.drawing.areas[area].style
         for kind, k, value in ((records.STYLE, i, style), (records.REFERENCE, 0, reference)):
             if value is not None and value != self.drawing.get(kind, k):
