@@ -168,6 +168,7 @@ class EditingMachine(RuleBasedStateMachine):
         document, rng = self.document, np.random.default_rng(seed)
         others = document.dots.id[document.dots.area != 0].copy()
         document.begin_draft("Stipple", 0, Style(n_dots=seed + 1, pen="quill"))
+        self.merged = True
         n = 0
         for n in sizes:
             document.draft(rng.uniform(0, 1, (n, 2)) * (20, 10), np.full(n, 0.2, np.float32))
