@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 
@@ -10,6 +11,7 @@ from imgui_bundle import imgui
 from stippler.drawing.preview import Preview
 from stippler.editor.area_acts import AreaActs
 from stippler.editor.batches import parts_of
+from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -20,6 +22,7 @@ from stippler.editor.events import (
 )
 from stippler.editor.hands import Hands
 from stippler.editor.keymap import load_keys
+from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.rates import FrameRate
@@ -40,6 +43,7 @@ from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
@@ -51,6 +55,7 @@ from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.strip import draw_tools
 from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
+from stippler.ui.panels.writing import WritingNotice
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
 from stippler.ui.preferences import Preferences
@@ -99,9 +104,11 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.lines = Lines(session, self.painting)
         self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
+        self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
@@ -114,8 +121,11 @@ class Editor:
             },
             kept.closed,
         )
+        self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
+            "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
+        }
         self.lens_key = LensKey(self.look)
-        self.menu = MenuBar()
+        self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
@@ -134,6 +144,7 @@ class Editor:
             self.session,
             self.painting,
             Selecting(self.session, self.painting),
+            self.lines,
             self.area_acts,
             self.pointer,
             self.view,
@@ -166,7 +177,7 @@ class Editor:
         if events:
             self._schedule.note_input(began)
             self._may_have_changed = True
-        if self.session.poll():
+        if self.session.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -174,7 +185,7 @@ class Editor:
         if not self._schedule.due(began):
             return False
         self._frame(events, began)
-        moving = self.view.moving or self.painting.toolbox.is_timed
+        moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.exporting.moves
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
@@ -191,10 +202,21 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
-        self.popups.recovery.close()
+        self.popups.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
+
+    def renew_graphics(self) -> None:
+        """Make GL's context and all that is in it anew: the drawing never lives there alone."""
+        with contextlib.suppress(Exception):  # a lost context may refuse anything
+            self.canvas.close()
+            self._samples.close()
+        self.gui.leave()
+        self._window.renew()
+        self.gui.join()
+        self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self.popups.recovery.renew(self._window.ctx)
 
     # --- one frame --------------------------------------------------------------------------
 
@@ -221,6 +243,9 @@ class Editor:
             screen.use()
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
+        if self._window.is_lost:
+            self.renew_graphics()
+            self.session.messages.say("the graphics driver was reset; nothing is lost", WARNING)
         self.lens_key.note_frame(self._window.now_s)
         name, changed = self.session.name, "*" if self.session.unsaved else ""
         self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
@@ -266,6 +291,8 @@ class Editor:
             draw_invitation(self.widgets, self.commands, recent(), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
+        exports = self.session.exports
+        self._guarded("the writing", lambda: self._writing.draw(self.widgets, exports, area))
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
@@ -280,6 +307,9 @@ class Editor:
     def _draw_tool(self) -> None:
         n_selected = self.painting.n_selected
         draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected)
+        if self.painting.toolbox.name in self._of_tools:
+            self.widgets.rule()
+            self._of_tools[self.painting.toolbox.name]()
 
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
@@ -346,6 +376,7 @@ class Editor:
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
+            self._desk.follow()
 
     def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
         """Take an event; what fails is told, and those after it are taken as ever."""
@@ -435,5 +466,5 @@ class Editor:
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
         self._keep_soon(now)
-        if self.popups.dialogs.waiting:
+        if self.popups.dialogs.waiting or self.session.exporting:
             self._schedule.wake_at(now + _ANSWER_S)
