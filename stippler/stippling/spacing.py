@@ -41,7 +41,7 @@ class Rules:
     near: float = 0.86
     base: float = 0.06
     slope: float = 1.0
-    cap: float = 0.95
+    cap: float = 0.94
     hole: float = 1.15
     narrow: float = 0.6
     level: float = 0.5
