@@ -19,6 +19,8 @@ _SCATTER = (
     (0.7, 0.75),
 )
 
+_STEPS = tuple(k / 12 for k in range(13))
+
 
 @dataclass(frozen=True, slots=True)
 class Pen:
@@ -160,6 +162,13 @@ def _select(p: Pen) -> None:
             p.line((x, y0), (x, y0 + 0.16))
 
 
+def _line(p: Pen) -> None:
+    turn = [(0.12 + 0.76 * t, 0.72 - 0.5 * t + 0.24 * math.sin(t * math.tau)) for t in _STEPS]
+    p.line(*turn)
+    for x, y in (turn[0], turn[-1]):
+        p.dot(x, y, 0.08)
+
+
 def _nodes(p: Pen) -> None:
     p.line((0.12, 0.78), (0.3, 0.42), (0.56, 0.3), (0.88, 0.22))
     for x, y in ((0.12, 0.78), (0.44, 0.34), (0.88, 0.22)):
@@ -167,6 +176,25 @@ def _nodes(p: Pen) -> None:
         p.draw.add_rect_filled(low, high, p.colour)
     p.line((0.44, 0.34), (0.62, 0.86))
     p.ring(0.62, 0.86, 0.09)
+
+
+def _area(p: Pen) -> None:
+    p.line((0.14, 0.4), (0.46, 0.12), (0.88, 0.34), (0.74, 0.82), (0.24, 0.86), (0.14, 0.4))
+    for x, y in ((0.46, 0.12), (0.88, 0.34), (0.74, 0.82), (0.24, 0.86), (0.14, 0.4)):
+        p.dot(x, y, 0.08)
+
+
+def _knife(p: Pen) -> None:
+    p.line((0.12, 0.9), (0.9, 0.12))
+    p.line((0.1, 0.5), (0.1, 0.1), (0.5, 0.1))
+    p.line((0.5, 0.9), (0.9, 0.9), (0.9, 0.5))
+
+
+def _bucket(p: Pen) -> None:
+    p.line((0.2, 0.5), (0.5, 0.16), (0.82, 0.48), (0.48, 0.84), (0.2, 0.5))
+    p.draw.add_triangle_filled(p.at(0.2, 0.5), p.at(0.82, 0.5), p.at(0.48, 0.84), p.colour)
+    p.dot(0.88, 0.74, 0.08)
+    p.line((0.38, 0.06), (0.5, 0.16))
 
 
 _ICONS: dict[str, Callable[[Pen], None]] = {
@@ -186,7 +214,11 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "push": _push,
     "comb": _comb,
     "select": _select,
+    "line": _line,
     "nodes": _nodes,
+    "area": _area,
+    "knife": _knife,
+    "bucket": _bucket,
 }
 
 

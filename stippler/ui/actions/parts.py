@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from stippler.editor.area_acts import AreaActs
+from stippler.editor.lines import Lines
 from stippler.editor.painting import Painting
 from stippler.editor.pointer import Pointer
 from stippler.editor.selecting import Selecting
@@ -35,6 +37,8 @@ class Parts:
     session: Session
     painting: Painting
     selecting: Selecting
+    lines: Lines
+    area_acts: AreaActs
     pointer: Pointer
     view: View
     look: Look
