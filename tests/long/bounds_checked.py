@@ -34,7 +34,7 @@ def odd_pictures() -> None:
             values[150, 150] = 1.0
         for method in FIRST_DOTS:
             style = Style(n_dots=n, iterations=2, first_dots=method)
-            for _ in stages(Reference(values, 100.0), style):
+            for _ in stages(Reference(values, max(20.0, 0.1 * shape[1])), style):
                 pass
 
 
