@@ -113,10 +113,9 @@ def _square(repeats: int) -> list[Figure]:
 def _even_against(lloyd: Relaxation, even: Relaxation, repeats: int) -> Figure:
     """Compare settled steps, in turns."""
     even.run(SETTLED)
-    pairs = [
-        (least_s(even.step, 1, warm=0), least_s(lloyd.step, 1, warm=0)) for _ in range(repeats)
-    ]
-    ratio = min(e for e, _ in pairs) / min(s for _, s in pairs)
+    engines = (even, lloyd)
+    turns = [[least_s(one.step, 1, warm=0) for one in engines] for _ in range(repeats)]
+    ratio = float(np.divide(*np.min(turns, axis=0)))
     return Figure("50k, a settled step of the even rules", ratio, "x Lloyd", 1.3)
 
 
