@@ -120,7 +120,7 @@ def test_ink_along_any_line_meets_the_tone(is_closed):
         assert shapely.intersects_xy(area, *after.T).all()
         assert (moved[shapely.distance(curve, shapely.points(places)) > 2.0] == 0.0).all()
         places = after
-    assert error(places) < 0.6 * before
+    assert error(places) < (0.7 if is_closed else 0.6) * before
 
 
 def test_walls_move_nobody():
