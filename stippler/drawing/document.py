@@ -242,7 +242,8 @@ class Document:
             self.end_run()
             if self.history.undone is not step:
                 return True
-        return self._step(self.history.undo(), UNDONE)
+        n_done = self.history.n_done
+        return self._step(self.history.undo(), UNDONE, n_done)
 
     def redo(self) -> bool:
         """Do the last undone step again; return whether there was one.
@@ -253,7 +254,8 @@ class Document:
             If the step lay on disk and is lost; it and all later ones are gone, and nothing else.
         """
         self._no_stroke()
-        return self._step(self.history.redo(), REDONE)
+        n_done = self.history.n_done
+        return self._step(self.history.redo(), REDONE, n_done)
 
     def steps(self) -> list[Step] | None:
         """Return copies of all steps as they are now, a run's among them, for a file to keep.
@@ -268,9 +270,13 @@ class Document:
                 copy.edit = self._run.edit()
         return copies
 
-    def _step(self, edit: Edit | None, what: str) -> bool:
+    def _step(self, edit: Edit | None, what: str, n_before: int) -> bool:
         if edit is not None:
-            self._apply(edit)
+            try:
+                self._apply(edit)
+            except BaseException:  # for want of memory: it was not done
+                self.history.go_to(n_before)
+                raise
             self._tell(Entry(what, edit))
         return edit is not None
 
