@@ -91,6 +91,8 @@ class Scene:
                 self.set_positions(dots.position_mm, dots.radius_mm)
         if is_other or changed.has(records.LINE):
             self.set_lines(document.drawing.lines)
+        if is_other or changed.has(records.PATTERN):
+            self.lines.set_patterns(document.drawing.patterns.values(), self.origin_mm)  # type: ignore[arg-type]
         self._selected_ids = selected
         self._document, self._cursor = document, changed.cursor
 
@@ -100,6 +102,7 @@ class Scene:
         self.set_page(width_mm, height_mm)
         self.set_dots(Dots.none(), np.zeros(0, np.bool_))
         self.set_lines({})
+        self.lines.set_patterns((), self.origin_mm)
 
     # --- its parts --------------------------------------------------------------------------
 
