@@ -146,6 +146,46 @@ class Patterns:
         if laid is not None:
             self.change(deformation=replace(laid[1].deformation, cage=None, pins_mm=()))
 
+    # --- its dots -----------------------------------------------------------------------------
+
+    def fill(self) -> None:
+        """Fill all polygons with dots and relax them at once, in the worker.
+
+        By the picture, in the style of the area; without one, as many as the panel *Fill* says,
+        which take the place of the free dots that are there.
+        """
+        from stippler.editor import processing
+
+        document = self.document
+        if document is None:
+            return
+        if document.drawing.reference is not None:
+            processing.process(self._session, [self.area])
+            return
+        from stippler.editor.activity import Filling
+        from stippler.jobs.patterns import fill_and_relax
+        from stippler.stippling.part_of_area import part_for_dots
+
+        session, values = self._session, self._session.filling
+        try:
+            part = part_for_dots(document.drawing, self.area, document.partition.part_of(self.area))
+        except StipplerError as error:
+            session.messages.say(str(error), WARNING)
+            return
+        processing.clear(session, [self.area])
+        session.supersede()
+        source, steps = session.source, session.style.iterations or 20
+        session.launch(
+            lambda: fill_and_relax(part, values, steps),
+            lambda k: Filling(k, "fill", source, values.radius_mm),
+        )
+
+    def relax(self) -> None:
+        """Relax the area's dots, each within its polygon."""
+        from stippler.editor import processing
+
+        processing.relax(self._session, [self.area])
+
     def _lay(self, make: Any, label: str) -> None:
         from stippler.drawing import records
         from stippler.stippling.patterns import cells_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from stippler.jobs.preparing import prepared_kernels
@@ -55,18 +55,20 @@ def go_on(task: Task) -> Iterator[Work]:
         yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
 
 
-def relax_drawing(drawing: Drawing, style: Style, steps: int) -> Iterator[Work]:
+def relax_drawing(
+    drawing: Drawing, style: Style, steps: int, areas: Collection[int] | None = None
+) -> Iterator[Work]:
     """Relax the free dots of a drawing that nobody else changes, each within what its area owns.
 
     Spaced evenly by the tone they keep it: see `stippler.stippling.relax_all`. Dots that lie in
-    another area's part stay where they are.
+    another area's part stay where they are; so do those of other areas than the ones given.
     """
     yield Work("relax", 0, steps)
     from stippler.stippling.pipeline import run
     from stippler.stippling.progress import DONE
     from stippler.stippling.tasks import relaxing
 
-    task, rows = relaxing(drawing, style, steps)
+    task, rows = relaxing(drawing, style, steps, areas)
     for made in run(task):
         moved = drawing.dots.position_mm.copy()
         moved[rows] = made.position_mm
@@ -77,10 +79,16 @@ def relax_drawing(drawing: Drawing, style: Style, steps: int) -> Iterator[Work]:
         yield Work(made.stage, made.done, made.total, moved_mm=moved, radius_mm=sizes)
 
 
-def fill(outline: Polygon | MultiPolygon, values: Filling) -> Iterator[Work]:
-    """Find places for dots in an area that has no picture."""
-    yield Work("fill")
+def fill(outlines: Sequence[Polygon | MultiPolygon], values: Filling) -> Iterator[Work]:
+    """Find places for dots in areas that have no picture, as many in each."""
+    yield Work("fill", 0, len(outlines))
+    import numpy as np
+
     from stippler.stippling.initial_points import fill_area
 
-    points = fill_area(outline, values.n_dots, values.arrangement, values.seed)
-    yield Work("fill", 1, 1, points_mm=points)
+    found = [np.empty((0, 2))]
+    for k, outline in enumerate(outlines, start=1):
+        found.append(fill_area(outline, values.n_dots, values.arrangement, values.seed))
+        if k < len(outlines):
+            yield Work("fill", k, len(outlines))
+    yield Work("fill", len(outlines), len(outlines), points_mm=np.concatenate(found))

@@ -62,6 +62,10 @@ class Work:
         Where an area is to have more dots.
     document : Document or None
         A drawing that was kept; nobody else holds it.
+    area : int
+        Whose dots `progress` tells of.
+    finished : tuple of (area, Progress)
+        Areas whose dots are done, in their order.
     """
 
     stage: str
@@ -73,3 +77,5 @@ class Work:
     radius_mm: NDArray[np.float32] | None = None
     points_mm: NDArray[np.float64] | None = None
     document: Document | None = None
+    area: int = 0
+    finished: tuple[tuple[int, Progress], ...] = ()

@@ -108,7 +108,7 @@ def _clear_of_neighbours(draft: Draft, points: Floats) -> Floats:
     tree = KDTree(others)
     least = _APART / np.sqrt(np.maximum(draft.raster.density_under(points), 1e-12))
     for _ in range(_ROUNDS):
-        found = tree.query(points)
+        found = tree.query(points, distance_upper_bound=float(least.max()))
         distance, which = np.asarray(found[0]), np.asarray(found[1])
         near = np.flatnonzero(distance < least)
         if not len(near):

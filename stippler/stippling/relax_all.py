@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 from scipy.spatial import KDTree
@@ -25,12 +26,14 @@ from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import AT_REST, Relaxation, StepReport
 from stippler.stippling.spacing import AT_LAST, TO_INK, Wanted
 from stippler.stippling.task import Standing, Task
+from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import DotRule, ink_for
 from stippler.stippling.transport import with_long_waves_gone
 
 _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solved
 _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
+_WHOLE = 1e-6  # of the page
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
 
 Floats = NDArray[np.float64]
@@ -144,7 +147,7 @@ def _keeping_tone(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     reference, standing = draft.task.reference, draft.standing
     assert reference is not None, "without one there is no tone to keep"
     before = draft.points
-    sheet = _Sheet(before, draft.radius_mm, reference)
+    sheet = _Sheet(draft, reference)
     still = draft.fixed | sheet.beside(before)
     start = draft.without_long_waves(still, sheet)
     field = DensityField(sheet.raster.darkness, sheet.raster.pixel_mm)
@@ -205,12 +208,18 @@ def _around_restless(
 class _Sheet:
     """A finished drawing on the raster of its reference: which sizes were solved, and the rule."""
 
-    def __init__(
-        self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32], reference: Reference
-    ) -> None:
+    def __init__(self, draft: StandingDraft, reference: Reference) -> None:
+        position_mm, radius_mm = draft.points, draft.radius_mm
         self.radius_mm = radius_mm
         self.raster = PageRaster.of(reference, len(position_mm), None, bleeds=False)
         pixel = self.raster.pixel_mm
+        w, h = self.raster.size_mm
+        parts, of_dot = draft.task.parts_mm, draft.standing.part_of_dot
+        covered = sum(part.area for part in parts)
+        self._covered_mm2 = min(covered, w * h)
+        self._within = None  # the cells are the page's, where all of it takes part
+        if covered < (1.0 - _WHOLE) * w * h:
+            self._within = [shapely.transform(p, lambda xy: xy / pixel) for p in parts], of_dot
         sizes = radius_mm.astype(np.float64)
         self.rule = DotRule(float(sizes.min()) / pixel, float(sizes.max()) / pixel)
         self.is_solved = np.zeros(len(sizes), np.bool_)
@@ -228,7 +237,7 @@ class _Sheet:
     def beside(self, position_mm: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell which dots lie so near to the edge of the page that its bleed held them."""
         size = np.array(self.raster.size_mm)
-        spacing = np.sqrt(size.prod() / len(position_mm))
+        spacing = np.sqrt(self._covered_mm2 / len(position_mm))
         near = np.minimum(position_mm, size - position_mm).min(axis=1) < _BESIDE * spacing
         return np.asarray(near, np.bool_)
 
@@ -251,7 +260,12 @@ class _Sheet:
     def _solved(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
         pixel = self.raster.pixel_mm
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / pixel
-        *_, (_, radii) = solve_radii(inside, self.raster.darkness, self.rule)
+        cells = None
+        if self._within is not None:
+            parts, of_dot = self._within
+            field = DensityField(self.raster.darkness, 1.0)
+            cells = Tessellation.of(inside, parts, of_dot, field)
+        *_, (_, radii) = solve_radii(inside, self.raster.darkness, self.rule, tessellation=cells)
         return radii * pixel
 
     def _size_by_darkness(

@@ -23,6 +23,7 @@ from stippler.editor.keymap import load_keys
 from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
+from stippler.editor.patterns import Patterns
 from stippler.editor.rates import FrameRate
 from stippler.editor.schedule import Schedule
 from stippler.editor.selecting import Selecting
@@ -36,6 +37,7 @@ from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
+from stippler.ui.canvas.pattern_samples import PatternSamples
 from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
@@ -44,6 +46,7 @@ from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layou
 from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
+from stippler.ui.panels.patterns import draw_patterns
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
 from stippler.ui.panels.progress import draw_work
@@ -102,6 +105,8 @@ class Editor:
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
         self.lines = Lines(session, self.painting)
+        self.patterns = Patterns(session, self.painting)
+        self._pattern_samples = PatternSamples(window.ctx)
         self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
@@ -119,6 +124,9 @@ class Editor:
         )
         self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
             "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
+            "pattern": lambda: draw_patterns(
+                self.widgets, self.patterns, self.commands, self._pattern_samples
+            ),
         }
         self.lens_key = LensKey(self.look)
         self.menu = MenuBar()
@@ -141,6 +149,7 @@ class Editor:
             self.painting,
             Selecting(self.session, self.painting),
             self.lines,
+            self.patterns,
             self.area_acts,
             self.pointer,
             self.view,
@@ -201,6 +210,7 @@ class Editor:
         self.popups.recovery.close()
         self.canvas.close()
         self._samples.close()
+        self._pattern_samples.close()
         self.gui.close()
 
     # --- one frame --------------------------------------------------------------------------
@@ -216,6 +226,7 @@ class Editor:
         self._build(last, dt_s)
         with self._window.frame() as screen:
             try:
+                self.look.patterns_shown = self.painting.toolbox.name == "pattern"
                 self.canvas.draw(
                     self.session,
                     self.painting.toolbox.selection,

@@ -16,7 +16,7 @@ from stippler.stippling.fill import Filling
 
 
 def added(document: Document, filling: Filling, area: int) -> int:
-    *_, made = fill(document.drawing.outlines()[area], filling)
+    *_, made = fill([document.drawing.outlines()[area]], filling)
     document.begin("Fill")
     rows = document.insert(Dots.round(made.points_mm, filling.radius_mm))
     document.commit()

@@ -150,7 +150,10 @@ def _mesh(bent: Deformation, box: Box) -> tuple[Path, ...]:
     only = Deformation(cage=cage)
     x0, y0, x1, y1 = cage.box_mm
     paths: list[Path] = []
-    for n, lines, goes_across in ((cage.columns, cage.rows, True), (cage.rows, cage.columns, False)):
+    for n, lines, goes_across in (
+        (cage.columns, cage.rows, True),
+        (cage.rows, cage.columns, False),
+    ):
         t = np.linspace(0.0, 1.0, (n - 1) * _MESH + 1)
         for k in range(lines):
             at = np.full_like(t, k / (lines - 1))

@@ -107,6 +107,18 @@ class Dialogs:
         else:
             self._own = _Own("Open a picture or a drawing", "Open", f"{folder}/", OPENED, take)
 
+    def ask_open(
+        self, title: str, folder: Path, endings: tuple[str, ...], take: Callable[[Path], None]
+    ) -> None:
+        """Ask for a file of some kinds to read."""
+        if self.is_open:
+            return
+        if self._use_native:
+            patterns = " ".join(f"*{ending}" for ending in endings)
+            self._native = _Native(native.open_file(title, str(folder), [title, patterns]), take)
+        else:
+            self._own = _Own(title, "Open", f"{folder}/", endings, take)
+
     def ask_export(
         self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]
     ) -> None:
