@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 
 from stippler.drawing.deformation import Deformation
-from stippler.drawing.dots import FREE, Dots, first_seeds
+from stippler.drawing.dots import FREE, NO_CURVE, Dots, first_seeds
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import MAX_DOTS
 from stippler.errors import ParameterError
@@ -83,7 +83,7 @@ def scaled_dots(dots: Dots, outlines: dict[int, Polygon | MultiPolygon], scaling
     for k, area in enumerate(np.unique(dots.area).tolist()):
         mine = np.flatnonzero(dots.area == area)
         rng = np.random.default_rng([scaling.seed, k])
-        part = _part(dots, mine, position, ink, wanted[mine], rng, next_id)
+        part = _part(dots, mine, position, ink, wanted[mine], rng, next_id, f)
         next_id = max(next_id, int(part.id.max(initial=-1)) + 1)
         if len(part) != len(mine):
             _relax(part, outlines.get(area))
@@ -153,7 +153,7 @@ def _numbers(dots: Dots, ink: Points, scaling: Scaling) -> Points:
 
 def _part(
     dots: Dots, mine: NDArray[np.intp], position: Points, ink: Points, wanted: Points,
-    rng: np.random.Generator, next_id: int,
+    rng: np.random.Generator, next_id: int, factor: float,
 ) -> Dots:  # fmt: skip
     """Return an area's dots after some went or some came, with the ink of all of them."""
     from scipy.spatial import cKDTree
@@ -166,6 +166,7 @@ def _part(
         count[stays] = 1
     out = dots.take(mine[stays])
     out.position_mm[:] = at[stays]
+    out.parameter *= factor
     new_ink = own[stays].copy()
     goes = np.flatnonzero(count == 0)
     free = np.flatnonzero(~out.fixed)
@@ -220,7 +221,7 @@ def _with_new(dots: Dots, more: NDArray[np.int64], rng: np.random.Generator, nex
     new.position_mm += away[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     new.id[:] = np.arange(next_id, next_id + len(parent))
     new.seed[:] = first_seeds(new.id)
-    new.constraint[:] = FREE
+    new.constraint[:], new.curve[:], new.parameter[:] = FREE, NO_CURVE, 0.0
     return Dots(
         **{x.name: np.concatenate([getattr(d, x.name) for d in (dots, new)]) for x in fields(Dots)}
     )

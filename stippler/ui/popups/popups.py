@@ -18,6 +18,7 @@ from stippler.ui.popups.new_page import NewPage
 from stippler.ui.popups.palette import Palette
 from stippler.ui.popups.preferences_window import PreferencesWindow
 from stippler.ui.popups.recovery import RecoveryWindow
+from stippler.ui.popups.scale import ScaleDrawing
 from stippler.ui.popups.shortcut_sheet import Sheet
 from stippler.ui.preferences import Preferences
 from stippler.ui.widgets import Widgets
@@ -45,6 +46,7 @@ class Popups:
             session.keeping.root, session, window.ctx, window.wake, self.filing.guard.then
         )
         self.new_page = NewPage(self.filing.begin)
+        self.scale = ScaleDrawing(session)
         self.palette = Palette(kept, self.filing.recent)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
@@ -58,6 +60,7 @@ class Popups:
             self.dialogs.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
+            or self.scale.is_open
             or self.recovery.is_open
             or self.palette.is_open
             or self.sheet.is_open
@@ -79,6 +82,7 @@ class Popups:
         guarded("the preferences", lambda: self.preferences.draw(widgets, commands))
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
+        guarded("scaling", lambda: self.scale.draw(widgets))
         guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the question", lambda: self.filing.guard.draw(widgets))
         guarded("the palette at the pointer", lambda: self.context.draw(widgets, commands))
