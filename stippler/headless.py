@@ -149,9 +149,7 @@ def _strips(
         made.callback(renderer.release)
         target = ctx.framebuffer([ctx.renderbuffer((columns, rows), channels)])
         made.callback(release_target, ctx, target)
-        renderer.scene.set_page(page.width_mm, page.height_mm)
-        renderer.scene.set_dots(drawing.dots)
-        renderer.scene.set_lines(drawing.lines)
+        renderer.scene.set_drawing(drawing)
         for top in range(0, size[1], rows):
             shape = (rows, size[0], channels)[: 2 if channels == 1 else 3]
             strip = np.empty(shape, np.uint8)

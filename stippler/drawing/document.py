@@ -235,6 +235,19 @@ class Document:
         self._no_stroke()
         return self._step(self.history.redo(), REDONE)
 
+    def steps(self) -> list[Step] | None:
+        """Return copies of all steps as they are now, a run's among them, for a file to keep.
+
+        None while a stroke or a draft goes on: what they have changed is no step yet.
+        """
+        if self._stroke is not None or self._draft is not None:
+            return None
+        copies = [replace(step) for step in self.history.steps]
+        for copy, step in zip(copies, self.history.steps, strict=True):
+            if self._run is not None and step is self._run.step:
+                copy.edit = self._run.edit()
+        return copies
+
     def _step(self, edit: Edit | None, what: str) -> bool:
         if edit is not None:
             self._apply(edit)

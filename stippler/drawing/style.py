@@ -45,6 +45,11 @@ _SPACINGS = (
     Choice("delaunay-mean", "Mean of neighbours"),
     Choice("springs", "Springs"),
 )
+WHITE_ON_BLACK = "white-on-black"
+_POLARITIES = (
+    Choice("black-on-white", "Black on white", "Dots of ink on paper."),
+    Choice(WHITE_ON_BLACK, "White on black", "Dots of paper left in a ground of ink."),
+)
 _PENS = (
     Choice("technical-pen", "Technical pen", "Round dots."),
     Choice("quill", "Quill", "Dots a little longer than wide."),
@@ -105,7 +110,16 @@ class Style:
     pen: str = parameter(
         Kind.CHOICE, DEFAULT_PEN, "Pen", "Whose shapes the dots have.", choices=_PENS,
     )  # fmt: skip
+    polarity: str = parameter(
+        Kind.CHOICE, "black-on-white", "Polarity", "Black dots on white paper, or white dots on a "
+        "ground of ink.", choices=_POLARITIES, is_more=True,
+    )  # fmt: skip
     name: str = ""
+
+    @property
+    def is_inverse(self) -> bool:
+        """Whether dots are white on a ground of ink."""
+        return self.polarity == WHITE_ON_BLACK
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""

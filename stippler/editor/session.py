@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +25,7 @@ from stippler.editor.exports import SAVED, Exports
 from stippler.editor.keeping import Keeping
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
+from stippler.editor.saving import Saving
 from stippler.editor.session_state import SessionState, Stipple
 from stippler.errors import ParameterError, StipplerError
 from stippler.jobs import reading, stippling, work
@@ -65,6 +66,7 @@ class Session(SessionState):
         make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
         is_warm: Callable[[], bool] = lambda: True,
         recovery: Path | None = None,
+        backups: Path | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
@@ -73,6 +75,7 @@ class Session(SessionState):
         self.messages = Messages(clock)
         self.keeping = Keeping(recovery, self.messages, clock)
         super().__init__(style, tone, width_mm, Exports(exporter, self.messages))
+        self.saving = Saving(self.exports, self.messages, backups, clock)
 
     # --- what a person does -----------------------------------------------------------------
 
@@ -86,15 +89,32 @@ class Session(SessionState):
         """Open a drawing that was saved."""
         self._reopen(reading.open_drawing(path, is_warm=self._is_warm), file=path)
 
+    def open_earlier(self, path: Path) -> None:
+        """Open an earlier version of the drawing in its place; its file stays as it is."""
+        job = reading.open_drawing(path, is_warm=self._is_warm)
+        self._reopen(job, file=self.exports.file, is_earlier=True)
+
     def recover(self, lost: Lost) -> None:
         """Open what a crash has left of a drawing."""
         self._reopen(reading.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
 
-    def _reopen(self, job: Iterator[Work], *, file: Path | None, lost: Lost | None = None) -> None:
+    def _reopen(
+        self,
+        job: Iterator[Work],
+        *,
+        file: Path | None,
+        lost: Lost | None = None,
+        is_earlier: bool = False,
+    ) -> None:
         self.supersede()
-        self.launch(lambda: job, lambda k: Reopening(k, work.READ, file=file, lost=lost))
+        self.launch(
+            lambda: job,
+            lambda k: Reopening(k, work.READ, file=file, lost=lost, is_earlier=is_earlier),
+        )
 
-    def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
+    def open_document(
+        self, document: Document, file: Path | None, lost: Lost | None, *, is_earlier: bool = False
+    ) -> None:
         """Open a drawing that was kept; what a crash had left of it goes when it is kept anew."""
         is_table = file is not None and file.suffix.lower() != SAVED
         self._open(document, None, None if is_table else file, lost)
@@ -109,6 +129,9 @@ class Session(SessionState):
         self.style = document.drawing.style_of(0)
         if lost is not None:
             self.messages.say(f"{lost.name} is as it was; save it to keep it")
+        if is_earlier:
+            self.exports.differs = True
+            self.messages.say("this is an earlier version; save it to go on with it")
 
     def show(self, drawing: Drawing, source: Source | None = None) -> None:
         """Open a drawing that is there; a job that runs is superseded."""
@@ -253,8 +276,30 @@ class Session(SessionState):
             return False
         return True
 
-    def export(self, path: Path, dpi: float) -> None:
-        """Write the drawing to a file, beside whatever else is going on."""
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the drawing is made from, which are never written over."""
+        return tuple(source.path for source in (self.source, self._asked) if source)
+
+    def export(
+        self,
+        path: Path,
+        dpi: float,
+        options: Mapping[str, Any] | None = None,
+        *,
+        expected_bytes: int = 0,
+    ) -> None:
+        """Write the drawing to a file, beside whatever else is going on.
+
+        Parameters
+        ----------
+        dpi : float
+            Where the options give none.
+        options : mapping, optional
+            Of the format; see `stippler.export.save`.
+        expected_bytes : int
+            About how large it will be, to tell how far it is.
+        """
         if self.exporting:
             self.messages.say("the last export is still being written", WARNING)
             return
@@ -264,8 +309,8 @@ class Session(SessionState):
         if not self.n_dots:
             self.messages.say("there are no dots to export", WARNING)
             return
-        inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
+        values = {"dpi": dpi} if options is None else options
+        self.exports.start(self.document, path, values, self.inputs, expected_bytes=expected_bytes)
 
     def save(self, path: Path, *, is_copy: bool = False) -> None:
         """Write all of the drawing to a file of its own, to go on with later.
@@ -280,7 +325,7 @@ class Session(SessionState):
         elif self.document is None:
             self.messages.say("there is no drawing to save yet", WARNING)
         else:
-            self.exports.start(self.document, path, {}, is_copy=is_copy)
+            self.saving.save(self.document, path, is_copy=is_copy)
 
     # --- what the workers did ---------------------------------------------------------------
 
@@ -293,6 +338,7 @@ class Session(SessionState):
         if written is not None and written == self.exports.file:
             self.keeping.saved(written)
         self.keeping.poll()
+        self.saving.poll(self.document)
         return written is not None or changed
 
     def apply(self, update: Update[Work]) -> bool:
@@ -388,6 +434,7 @@ class Session(SessionState):
             self.document.history.close()
         self.document, self._read = document, source
         self.exports.begin_drawing(file, None if lost else document)
+        self.saving.begin_drawing(self.name)
         self.keeping.open(document, self.name, file, lost)
         self.revision += 1
 

@@ -62,6 +62,8 @@ class Work:
         Where an area is to have more dots.
     document : Document or None
         A drawing that was kept; nobody else holds it.
+    note : str
+        What a person should know of it.
     area : int
         Whose dots `progress` tells of.
     finished : tuple of (area, Progress)
@@ -77,5 +79,6 @@ class Work:
     radius_mm: NDArray[np.float32] | None = None
     points_mm: NDArray[np.float64] | None = None
     document: Document | None = None
+    note: str = ""
     area: int = 0
     finished: tuple[tuple[int, Progress], ...] = ()

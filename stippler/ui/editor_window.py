@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 
@@ -10,6 +11,7 @@ from imgui_bundle import imgui
 from stippler.drawing.preview import Preview
 from stippler.editor.area_acts import AreaActs
 from stippler.editor.batches import parts_of
+from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -56,6 +58,7 @@ from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.strip import draw_tools
 from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
+from stippler.ui.panels.writing import WritingNotice
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
 from stippler.ui.preferences import Preferences
@@ -110,6 +113,7 @@ class Editor:
         self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
+        self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self._layout = Layout()
         self.panels = Panels(
@@ -129,7 +133,7 @@ class Editor:
             ),
         }
         self.lens_key = LensKey(self.look)
-        self.menu = MenuBar()
+        self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
@@ -182,7 +186,7 @@ class Editor:
         if events:
             self._schedule.note_input(began)
             self._may_have_changed = True
-        if self.session.poll():
+        if self.session.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -190,7 +194,7 @@ class Editor:
         if not self._schedule.due(began):
             return False
         self._frame(events, began)
-        moving = self.view.moving or self.painting.toolbox.is_timed
+        moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.exporting.moves
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
@@ -207,11 +211,22 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
-        self.popups.recovery.close()
+        self.popups.close()
         self.canvas.close()
         self._samples.close()
         self._pattern_samples.close()
         self.gui.close()
+
+    def renew_graphics(self) -> None:
+        """Make GL's context and all that is in it anew: the drawing never lives there alone."""
+        with contextlib.suppress(Exception):  # a lost context may refuse anything
+            self.canvas.close()
+            self._samples.close()
+        self.gui.leave()
+        self._window.renew()
+        self.gui.join()
+        self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self.popups.recovery.renew(self._window.ctx)
 
     # --- one frame --------------------------------------------------------------------------
 
@@ -239,6 +254,9 @@ class Editor:
             screen.use()
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
+        if self._window.is_lost:
+            self.renew_graphics()
+            self.session.messages.say("the graphics driver was reset; nothing is lost", WARNING)
         self.lens_key.note_frame(self._window.now_s)
         name, changed = self.session.name, "*" if self.session.unsaved else ""
         self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
@@ -284,6 +302,8 @@ class Editor:
             draw_invitation(self.widgets, self.commands, recent(), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
+        exports = self.session.exports
+        self._guarded("the writing", lambda: self._writing.draw(self.widgets, exports, area))
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
@@ -367,6 +387,7 @@ class Editor:
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
+            self._desk.follow()
 
     def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
         """Take an event; what fails is told, and those after it are taken as ever."""
@@ -456,5 +477,5 @@ class Editor:
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
         self._keep_soon(now)
-        if self.popups.dialogs.waiting:
+        if self.popups.dialogs.waiting or self.session.exporting:
             self._schedule.wake_at(now + _ANSWER_S)

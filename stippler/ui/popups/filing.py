@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.editor.commands import Command
 from stippler.editor.exports import SAVED
@@ -13,6 +13,7 @@ from stippler.editor.session import Session
 from stippler.names import shown
 from stippler.resources import assets
 from stippler.ui.popups.file_dialogs import Dialogs
+from stippler.ui.popups.shelf import Item, when
 from stippler.ui.popups.unsaved_guard import Guard
 from stippler.ui.preferences import Preferences
 
@@ -37,6 +38,8 @@ class Filing:
     ) -> None:
         self._session, self._dialogs, self._kept, self._end = session, dialogs, kept, end
         self.guard = Guard(session, self.save, lambda: dialogs.is_open)
+        self.ask_export: Callable[[Path], None] = lambda path: None
+        self._last: tuple[Path, dict[str, Any]] | None = None
         self._noted: Path | None = None
 
     # --- opening ------------------------------------------------------------------------------
@@ -75,6 +78,34 @@ class Filing:
             )
             for path in self._kept.recent
         ]
+
+    def recent_items(self) -> list[Item]:
+        """Return the files of the list for a shelf."""
+        return [
+            Item(path, path.name, shown(str(path)), self._opener(path))
+            for path in self._kept.recent
+        ]
+
+    def earlier_items(self) -> list[Item]:
+        """Return the earlier versions of the open drawing, the newest first."""
+        backups = self._session.saving.earlier()
+        if backups is None or self._session.document is None:
+            return []
+        return [
+            Item(
+                backup.path,
+                when(backup.saved_s),
+                "saved by itself" if backup.is_auto else "as it was before a later save",
+                self._earlier_opener(backup.path),
+            )
+            for backup in backups.listed()
+        ]
+
+    def _earlier_opener(self, path: Path) -> Callable[[], None]:
+        def act() -> None:
+            self._session.open_earlier(path)
+
+        return lambda: self.guard.then("Opening an earlier version", act)
 
     def _opener(self, path: Path) -> Callable[[], None]:
         return lambda: self.open_recent(path)
@@ -168,7 +199,8 @@ class Filing:
         if path is None or not self._session.n_dots:
             self.export_as()
         else:
-            self._session.export(path, EXPORT_DPI)
+            options = self._last[1] if self._last is not None and self._last[0] == path else None
+            self._session.export(path, EXPORT_DPI, options)
 
     def export_as(self) -> None:
         """Ask where to write the drawing, and write it."""
@@ -176,13 +208,18 @@ class Filing:
         if session.drawing is None or not session.n_dots:
             session.export(Path("drawing.svg"), EXPORT_DPI)  # says why there is nothing to write
             return
-        from stippler.export import ENDINGS
+        self.ask_export(session.exports.path or _first_path(session.source))
 
-        self._dialogs.ask_export(
-            session.exports.path or _first_path(session.source),
-            tuple(ending for ending in ENDINGS if ending != SAVED),
-            lambda path: session.export(path, EXPORT_DPI),
-        )
+    def write(self, path: Path, options: dict[str, Any], expected_bytes: int = 0) -> None:
+        """Write to a file by options of its format; the next time they are used again."""
+        self._last = (path, options)
+        self._session.export(path, EXPORT_DPI, options, expected_bytes=expected_bytes)
+
+    def show_calibration_sheet(self) -> None:
+        """Open the sheet that presses are calibrated by."""
+        from stippler.files.checks import calibration_sheet
+
+        self.guard.then("The calibration sheet", lambda: self._session.show(calibration_sheet()))
 
 
 def _first_path(source: Source | None) -> Path:
