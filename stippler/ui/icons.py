@@ -206,6 +206,13 @@ def _pattern(p: Pen) -> None:
                     p.line((x, y), (x, y + 0.24))
 
 
+def _warp(p: Pen) -> None:
+    for k in (0.15, 0.5, 0.85):
+        bend = 0.16 * math.sin(math.pi * k)
+        p.line(*((0.12 + 0.76 * t, k - bend * math.sin(math.pi * t)) for t in _STEPS))
+        p.line(*((k + bend * math.sin(math.pi * t), 0.12 + 0.76 * t) for t in _STEPS))
+
+
 _ICONS: dict[str, Callable[[Pen], None]] = {
     "": _none,
     "add": _add,
@@ -225,6 +232,7 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "select": _select,
     "line": _line,
     "pattern": _pattern,
+    "warp": _warp,
     "nodes": _nodes,
     "area": _area,
     "knife": _knife,
