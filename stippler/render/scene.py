@@ -13,6 +13,7 @@ from stippler.drawing import records
 from stippler.drawing.dots import Dots
 from stippler.drawing.polarity import Polarity, grounds_of, polarity_of
 from stippler.drawing.reference import Reference
+from stippler.drawing.visible import NONE, sized_zero
 from stippler.render.dot_buffer import DotBuffer
 from stippler.render.ground import GroundBuffer
 from stippler.render.lines import LineBuffer
@@ -49,6 +50,7 @@ class Scene:
         self._selected_ids = _NO_IDS
         self._document: Document | None = None  # whose dots are there
         self._cursor = 0  # how far its changes are
+        self._hidden = NONE
 
     @property
     def n_dots(self) -> int:
@@ -62,13 +64,20 @@ class Scene:
 
     # --- a document ---------------------------------------------------------------------------
 
-    def sync(self, document: Document, selected: NDArray[np.int64] = _NO_IDS) -> None:
+    def sync(
+        self,
+        document: Document,
+        selected: NDArray[np.int64] = _NO_IDS,
+        hidden: frozenset[int] = NONE,
+    ) -> None:
         """Bring what has changed in a document to the GPU.
 
         Parameters
         ----------
         selected : ids of dots
             An array that is not changed afterwards.
+        hidden : ids of areas
+            Their dots are not seen.
 
         Notes
         -----
@@ -79,7 +88,10 @@ class Scene:
         page = document.drawing.page
         is_other = is_other or self.page_mm != (page.width_mm, page.height_mm)
         self.page_mm = (page.width_mm, page.height_mm)
-        changed, dots, rows = document.changes.since(cursor), document.dots, None
+        is_other = is_other or hidden != self._hidden
+        self._hidden = hidden
+        changed, rows = document.changes.since(cursor), None
+        dots = sized_zero(document.dots, hidden)
         chosen = np.zeros(len(dots), np.bool_)
         there = document.rows(selected)
         chosen[there[there >= 0]] = True

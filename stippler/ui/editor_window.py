@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 
 from stippler.drawing.preview import Preview
 from stippler.editor.area_acts import AreaActs
+from stippler.editor.area_jobs import AreaJobs, Step
 from stippler.editor.batches import parts_of
 from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
@@ -34,6 +35,7 @@ from stippler.editor.shaping import Shaping
 from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
+from stippler.jobs.worker import Worker
 from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import Canvas
@@ -41,10 +43,11 @@ from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.canvas.pattern_samples import PatternSamples
 from stippler.ui.canvas.pen_samples import PenSamples
+from stippler.ui.panels.areas import AreasPanel
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.layout import AREAS, DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
@@ -107,10 +110,13 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self._area_worker: Worker[Step] = Worker(window.wake)
+        self.area_jobs = AreaJobs(self._area_worker, session.messages)
+        self.area_acts = AreaActs(session, self.painting, self.area_jobs)
+        self._areas_panel = AreasPanel(self.area_acts)
         self.lines = Lines(session, self.painting)
         self.patterns = Patterns(session, self.painting)
         self._pattern_samples = PatternSamples(window.ctx)
-        self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self._desk = DeskState(session, self.view, self.painting.toolbox)
@@ -120,6 +126,7 @@ class Editor:
             {
                 DRAWING: self._draw_drawing,
                 TOOL: self._draw_tool,
+                AREAS: lambda: self._areas_panel.draw(self.widgets, self.commands),
                 SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
                 VIEW: self._draw_view,
                 HISTORY: self._draw_history,
@@ -186,7 +193,7 @@ class Editor:
         if events:
             self._schedule.note_input(began)
             self._may_have_changed = True
-        if self.session.poll() | self.popups.exporting.poll():
+        if self.session.poll() | self.area_jobs.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -211,6 +218,7 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
+        self._area_worker.close()
         self.popups.close()
         self.canvas.close()
         self._samples.close()
@@ -245,6 +253,7 @@ class Editor:
                 self.canvas.draw(
                     self.session,
                     self.painting.toolbox.selection,
+                    self.painting.toolbox.areas.solo,
                     self.view.camera,
                     self.look,
                     self._preview,
@@ -351,7 +360,8 @@ class Editor:
 
     def _draw_overlay(self, area: Rect) -> None:
         tool, document = self.painting.toolbox.tool, self.session.document
-        if document is not None and tool is not None and tool.shows_areas:
+        seen = self.panels.is_in_front(AREAS) or (tool is not None and tool.shows_areas)
+        if document is not None and seen:
             choice = self.painting.toolbox.areas
             self._area_overlay.draw(document, choice, self.view, area, self._ratio)
         draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)

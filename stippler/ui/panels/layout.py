@@ -8,6 +8,7 @@ from stippler.ui.theme import PANEL_WIDTH, STATUS_HEIGHT, STRIP_WIDTH
 from stippler.ui.widgets import Rect
 
 DRAWING, TOOL, SHAPE, VIEW, HISTORY = "Drawing", "Tool", "Shape", "View", "History"
+AREAS = "Areas"
 _TAB_PADDING = 7.0  # so that all tabs fit beside one another
 _HOST = (
     imgui.WindowFlags_.no_decoration
@@ -64,7 +65,7 @@ class Layout:
         build.dock_builder_set_node_size(space, size)
         share = min(PANEL_WIDTH * scale / max(size[0], 1.0), 0.6)
         split = build.dock_builder_split_node(space, imgui.Dir.left, share)
-        for name in (DRAWING, TOOL, SHAPE, VIEW, HISTORY):
+        for name in (DRAWING, TOOL, AREAS, SHAPE, VIEW, HISTORY):
             build.dock_builder_dock_window(name, split.id_at_dir)
         build.dock_builder_get_node(split.id_at_dir).set_local_flags(
             build.DockNodeFlagsPrivate_.no_close_button
