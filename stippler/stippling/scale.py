@@ -29,6 +29,8 @@ Points = NDArray[np.float64]
 Whole = TypeVar("Whole", bound="Drawing")
 
 _STEPS = 6
+_SETTLING = 8  # steps by the tone, where there is a picture
+_FEWEST = 20
 _PARENTS = 3  # dots that share the ink of one that goes
 
 
@@ -61,13 +63,20 @@ class Scaling:
             raise ParameterError(f"{self.least_radius_mm:g} mm is no radius", "scale")
 
 
-def scaled_dots(dots: Dots, outlines: dict[int, Polygon | MultiPolygon], scaling: Scaling) -> Dots:
+def scaled_dots(
+    dots: Dots,
+    outlines: dict[int, Polygon | MultiPolygon],
+    scaling: Scaling,
+    resting: frozenset[int] = frozenset(),
+) -> Dots:
     """Return dots scaled, fewer or more, each area by itself.
 
     Parameters
     ----------
     outlines : dict of area to polygon
         Scaled; what dots are relaxed in.
+    resting : set of areas
+        Whose dots are not relaxed.
 
     Notes
     -----
@@ -83,9 +92,9 @@ def scaled_dots(dots: Dots, outlines: dict[int, Polygon | MultiPolygon], scaling
     for k, area in enumerate(np.unique(dots.area).tolist()):
         mine = np.flatnonzero(dots.area == area)
         rng = np.random.default_rng([scaling.seed, k])
-        part = _part(dots, mine, position, ink, wanted[mine], rng, next_id, f)
+        part = _part(dots, mine, position, ink, wanted[mine], rng, next_id, scaling)
         next_id = max(next_id, int(part.id.max(initial=-1)) + 1)
-        if len(part) != len(mine):
+        if len(part) != len(mine) and area not in resting:
             _relax(part, outlines.get(area))
         parts.append(part)
     if not parts:
@@ -116,8 +125,41 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
             patterns={k: _scaled_pattern(p, f) for k, p in drawing.patterns.items()},
             borders={},  # made anew from the outlines, on the grid
         )
-    dots = scaled_dots(drawing.dots, drawing.outlines(), scaling)
-    return replace(drawing, dots=dots, reference=reference)
+    before = drawing.dots
+    toned: frozenset[int] = frozenset()
+    if reference is not None:
+        toned = frozenset(k for k in drawing.areas if drawing.style_of(k).sizes == "tone")
+    dots = scaled_dots(before, drawing.outlines(), scaling, toned)
+    drawing = replace(drawing, dots=dots, reference=reference)
+    for area in sorted(toned):
+        if np.count_nonzero(before.area == area) != np.count_nonzero(dots.area == area):
+            _solve(drawing, area, scaling.least_radius_mm)
+    return drawing
+
+
+def _solve(drawing: Drawing, area: int, least_mm: float) -> None:
+    """Let an area's dots settle in its tone, and size them for it, as when they were made."""
+    import shapely
+
+    from stippler.drawing.partition import Partition
+    from stippler.stippling.part_of_area import part_for_dots
+    from stippler.stippling.pipeline import run
+    from stippler.stippling.task import SETTLE, Standing, Task
+
+    style, reference, dots = drawing.style_of(area), drawing.reference, drawing.dots
+    rows = np.flatnonzero(dots.area == area)
+    if len(rows) < _FEWEST or reference is None:
+        return
+    owned = Partition(drawing.outlines()).part_of(area)
+    part = part_for_dots(drawing, area, owned)
+    rows = rows[shapely.contains_xy(part, *dots.position_mm[rows].T)]
+    style = replace(style, n_dots=len(rows), size_range_mm=None, iterations=_SETTLING)
+    fixed = dots.fixed[rows]
+    standing = Standing(dots.position_mm[rows], dots.radius_mm[rows], fixed)
+    *_, made = run(Task(style, reference, SETTLE, (part,), standing), snapshots=False)
+    free = rows[~fixed]
+    dots.position_mm[free] = made.position_mm[~fixed]
+    dots.radius_mm[free] = np.maximum(made.radius_mm[~fixed], least_mm)
 
 
 def _scaled_line(line: Any, by: Deformation, f: float) -> Any:
@@ -153,12 +195,12 @@ def _numbers(dots: Dots, ink: Points, scaling: Scaling) -> Points:
 
 def _part(
     dots: Dots, mine: NDArray[np.intp], position: Points, ink: Points, wanted: Points,
-    rng: np.random.Generator, next_id: int, factor: float,
+    rng: np.random.Generator, next_id: int, scaling: Scaling,
 ) -> Dots:  # fmt: skip
     """Return an area's dots after some went or some came, with the ink of all of them."""
     from scipy.spatial import cKDTree
 
-    at, own = position[mine], ink[mine]
+    at, own, least_ink = position[mine], ink[mine], scaling.least_radius_mm**2
     count = _rounded(at, wanted, dots.is_fixed(mine))
     stays = np.flatnonzero(count > 0)
     if not len(stays):
@@ -166,7 +208,7 @@ def _part(
         count[stays] = 1
     out = dots.take(mine[stays])
     out.position_mm[:] = at[stays]
-    out.parameter *= factor
+    out.parameter *= scaling.factor
     new_ink = own[stays].copy()
     goes = np.flatnonzero(count == 0)
     free = np.flatnonzero(~out.fixed)
@@ -179,8 +221,20 @@ def _part(
         np.add.at(new_ink, free[who], weight)
     more = count[stays] - 1
     new_ink /= 1 + more
+    _at_least(new_ink, least_ink, free)
     out.radius_mm[:] = np.sqrt(new_ink)
     return _with_new(out, more, rng, next_id) if more.any() else out
+
+
+def _at_least(ink: Points, least: float, free: NDArray[np.intp]) -> None:
+    """Give free dots that have less than the least ink as much, taken from all that have more."""
+    if least <= 0.0 or not len(free):
+        return
+    own = ink[free]
+    lack = float(np.maximum(least - own, 0.0).sum())
+    over = np.maximum(own - least, 0.0)
+    share = min(lack / max(float(over.sum()), 1e-300), 1.0)
+    ink[free] = np.maximum(own, least) - share * over
 
 
 def _rounded(at: Points, wanted: Points, fixed: NDArray[np.bool_]) -> NDArray[np.int64]:
