@@ -64,10 +64,28 @@ def following(
     lines = _streamlines(field, part, band_mm)
     made = shapely.buffer(lines, _WIDTH * band_mm / 2, cap_style="flat", quad_segs=4)
     made = shapely.simplify(made, 0.02 * band_mm)
-    rings = [np.asarray(p.exterior.coords)[:-1] for p in shapely.get_parts(made)]
+    rings = [ring for shape in made.tolist() for ring in _without_holes(shape)]
     name = "bands along the tone" if way == ALONG else "bands across edges"
     polygons = PolygonSet.of(name, [(ring - (x0, y0)) / size for ring in rings], 0.02)
     return Pattern(area, polygons, 1, 1, Deformation((size, 0, x0, 0, size, y0, 0, 0, 1)))
+
+
+def _without_holes(shape: Polygon | MultiPolygon) -> list[Floats]:
+    """Return the rings of polygons; one about a hole is cut in two through it."""
+    out: list[Floats] = []
+    todo = list(shapely.get_parts(shape))
+    while todo:
+        polygon = todo.pop()
+        if not isinstance(polygon, Polygon) or polygon.is_empty:
+            continue
+        if not polygon.interiors:
+            out.append(np.asarray(polygon.exterior.coords)[:-1])
+            continue
+        x0, y0, x1, y1 = polygon.bounds
+        middle = polygon.interiors[0].centroid.x
+        for low, high in ((x0, middle), (middle, x1)):
+            todo += list(shapely.get_parts(polygon.intersection(shapely.box(low, y0, high, y1))))
+    return out
 
 
 @dataclass(frozen=True, slots=True, eq=False)

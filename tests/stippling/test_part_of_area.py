@@ -126,3 +126,13 @@ def test_bands_follow_the_picture(way):
     flat = Reference(np.full((60, 80), 0.5, np.float32), 40.0)
     with pytest.raises(GeometryError, match="no slope"):
         following(0, part, flat, 2.0, way)
+
+
+def test_bands_about_a_spot_are_rings_with_room_within():
+    y, x = np.mgrid[0:60, 0:80]
+    spot = np.exp(-((x - 40) ** 2 + (y - 30) ** 2) / 300.0)
+    part = shapely.box(0, 0, 40, 30)
+    pattern = following(0, part, Reference(spot.astype(np.float32), 40.0), 2.0, "along")
+    cells = cells_of(part, pattern)
+    assert not cells.notes
+    assert max(p.area for p in cells.polygons) < 0.2 * part.area
