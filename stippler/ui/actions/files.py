@@ -17,7 +17,7 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     popups, filing, session = parts.popups, parts.popups.filing, parts.session
 
     def has_dots() -> bool:
-        return session.n_dots > 0
+        return session.n_dots > 0 or bool(session.drawing and session.drawing.lines)
 
     def is_open() -> bool:
         return session.document is not None
