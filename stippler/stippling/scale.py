@@ -106,6 +106,8 @@ def scaled_dots(
 def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     """Return a drawing at another size: page, areas, lines, patterns, reference and dots."""
     from stippler.drawing.drawing import Page
+    from stippler.drawing.partition import Partition
+    from stippler.stippling.part_of_area import part_for_dots
 
     f = scaling.factor
     reference = drawing.reference
@@ -129,20 +131,20 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     toned: frozenset[int] = frozenset()
     if reference is not None:
         toned = frozenset(k for k in drawing.areas if drawing.style_of(k).sizes == "tone")
-    dots = scaled_dots(before, drawing.outlines(), scaling, toned)
+    partition = Partition(drawing.outlines())
+    parts = {k: part_for_dots(drawing, k, partition.part_of(k)) for k in drawing.areas}
+    dots = scaled_dots(before, parts, scaling, toned)
     drawing = replace(drawing, dots=dots, reference=reference)
     for area in sorted(toned):
         if np.count_nonzero(before.area == area) != np.count_nonzero(dots.area == area):
-            _solve(drawing, area, scaling.least_radius_mm)
+            _solve(drawing, area, parts[area], scaling.least_radius_mm)
     return drawing
 
 
-def _solve(drawing: Drawing, area: int, least_mm: float) -> None:
+def _solve(drawing: Drawing, area: int, part: Polygon | MultiPolygon, least_mm: float) -> None:
     """Let an area's dots settle in its tone, and size them for it, as when they were made."""
     import shapely
 
-    from stippler.drawing.partition import Partition
-    from stippler.stippling.part_of_area import part_for_dots
     from stippler.stippling.pipeline import run
     from stippler.stippling.task import SETTLE, Standing, Task
 
@@ -150,8 +152,6 @@ def _solve(drawing: Drawing, area: int, least_mm: float) -> None:
     rows = np.flatnonzero(dots.area == area)
     if len(rows) < _FEWEST or reference is None:
         return
-    owned = Partition(drawing.outlines()).part_of(area)
-    part = part_for_dots(drawing, area, owned)
     rows = rows[shapely.contains_xy(part, *dots.position_mm[rows].T)]
     style = replace(style, n_dots=len(rows), size_range_mm=None, iterations=_SETTLING)
     fixed = dots.fixed[rows]
@@ -184,7 +184,8 @@ def _numbers(dots: Dots, ink: Points, scaling: Scaling) -> Points:
     """Return for each dot how many there are to be in its place."""
     share = np.ones(len(dots))
     if scaling.n_dots is not None:
-        share *= scaling.n_dots / max(len(dots), 1)
+        n_fixed = int(np.count_nonzero(dots.fixed))
+        share *= max(scaling.n_dots - n_fixed, 0) / max(len(dots) - n_fixed, 1)
     least = scaling.least_radius_mm**2
     if least > 0.0:
         share = np.minimum(share, ink / np.maximum(least, ink / np.maximum(share, 1e-12)))
