@@ -109,7 +109,7 @@ def test_the_panel_changes_lines_and_lays_rows(lines):
     n = len(document(lines).dots)
     editor.lines.row = editor.lines.row.__class__(by_number=True, n_dots=31, radius_mm=0.4)
     host.settle()
-    host.click("Lay the row")
+    editor.commands["line.row"].run()
     dots = document(lines).dots
     rows = np.flatnonzero((dots.constraint == ON_CURVE) & (dots.curve == k))
     assert len(dots) == n + 31 == n + len(rows)

@@ -62,6 +62,7 @@ def test_a_pattern_is_picked_filled_bent_and_undone(desk, tmp_path):
     )
     editor.patterns.add_file(path)
     assert "1 open path" in host.said()
+    host.move(900, 650)
     host.settle()
     host.click("pattern mine")
     assert document.drawing.patterns[k].polygons.name == "mine"
