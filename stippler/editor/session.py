@@ -107,6 +107,7 @@ class Session:
         self._is_warm = is_warm
         self._read: Source | None = None  # where the drawing's picture came from
         self._steps = StepRate()
+        self._stage: tuple[str, float] = ("", 0.0)  # and since when
 
     # --- what a person does -----------------------------------------------------------------
 
@@ -368,6 +369,13 @@ class Session:
     def stage(self) -> str:
         """What the job is at; empty without one."""
         return self.activity.stage if isinstance(self.activity, Job) else ""
+
+    @property
+    def stage_s(self) -> float:
+        """How long the job has been at its stage."""
+        if self.stage != self._stage[0]:
+            self._stage = (self.stage, self._clock())
+        return self._clock() - self._stage[1]
 
     @property
     def done(self) -> int:

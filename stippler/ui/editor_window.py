@@ -42,11 +42,12 @@ from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
+from stippler.ui.panels.progress import LOW as WORK_LOW
 from stippler.ui.panels.progress import draw_work
 from stippler.ui.panels.reference import draw_reference
 from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.status import Sight, draw_status
-from stippler.ui.panels.strip import draw_tools
+from stippler.ui.panels.strip import StripShape, draw_tools
 from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
 from stippler.ui.popups.file_dialogs import has_native_dialogs
@@ -57,7 +58,8 @@ from stippler.ui.window.gui import Gui
 from stippler.ui.window.window import Window
 
 _CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
-_LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
+_LEAST_SETTINGS = 60.0  # the theme's pixels; a lower panel scrolls as a whole
+_LOW = 300.0  # likewise; in a lower panel the work is one line
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
@@ -99,7 +101,6 @@ class Editor:
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
-        self._layout = Layout()
         self.panels = Panels(
             {
                 DRAWING: self._draw_drawing,
@@ -110,6 +111,7 @@ class Editor:
             },
             kept.closed,
         )
+        self._layout = Layout(self.panels.names)
         self.lens_key = LensKey(self.look)
         self.menu = MenuBar()
         self.commands = self.popups.commands = commands_for(self._parts())
@@ -232,6 +234,8 @@ class Editor:
             self.gui.scale,
             self.gui.escape_level,
             lambda text: self.session.messages.say(text, WARNING),
+            numbers=self.gui.numbers,
+            fields=self.gui.fields,
         )
         failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
         if failure is not None:
@@ -240,7 +244,8 @@ class Editor:
     def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
         self._guarded("the menu", lambda: self.menu.draw(self.widgets, self.commands, recent))
-        area = self._layout.draw(self.gui.scale)
+        tools = StripShape.fitting(len(self.painting.toolbox.tools) + 1, self.gui.scale)
+        area = self._layout.draw(self.gui.scale, tools.width)
         self._place(area)
         for event, for_panels in events:
             self._take_guarded(event, for_panels=for_panels)
@@ -253,7 +258,7 @@ class Editor:
         self._guarded("the lens", lambda: self._draw_lens(area))
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
-        self._guarded("the tools", self._draw_tools)
+        self._guarded("the tools", lambda: self._draw_tools(tools))
         self.panels.draw(self._guarded)
         if not self.panels.is_in_front(SHAPE):
             self.shaping.let_go()
@@ -264,13 +269,15 @@ class Editor:
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
-        room = imgui.get_content_region_avail().y - WORK_HEIGHT * self.gui.scale
-        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * self.gui.scale)))
+        scale, height = self.gui.scale, imgui.get_content_region_avail().y
+        is_low = height < _LOW * scale
+        room = height - (WORK_LOW if is_low else WORK_HEIGHT) * scale
+        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * scale)))
         draw_picture(self.widgets, self.session, self.commands)
         self.widgets.rule()
         draw_dots(self.widgets, self.session)
         imgui.end_child()
-        draw_work(self.widgets, self.session, self.commands)
+        draw_work(self.widgets, self.session, self.commands, is_low=is_low)
 
     def _draw_tool(self) -> None:
         n_selected = self.painting.n_selected
@@ -295,8 +302,9 @@ class Editor:
         self.panels.show_all()
         self._layout.reset()
 
-    def _draw_tools(self) -> None:
-        draw_tools(self.widgets, self.painting.toolbox, self.commands)
+    def _draw_tools(self, shape: StripShape) -> None:
+        toolbox = self.painting.toolbox
+        draw_tools(self.widgets, toolbox, self.commands, shape, lambda: self.show_panel(TOOL))
 
     @property
     def _overlay(self) -> Overlay:
@@ -321,7 +329,23 @@ class Editor:
         camera = self.view.camera
         zoom = camera.px_per_mm / self._window.px_per_mm
         sight = Sight(camera, self.pointer.at_mm, zoom, self.look.dots_shown)
-        draw_status(self.widgets, self.session, sight, self._rate)
+        typed = draw_status(
+            self.widgets, self.session, sight, self._rate, self.commands, self._hint()
+        )
+        if typed is not None:
+            self.view.zoom_to(typed * self._window.px_per_mm)
+
+    def _hint(self) -> str:
+        """Return what the tool at hand does, and how large its tip is on the screen."""
+        toolbox = self.painting.toolbox
+        if toolbox.tool is None:
+            return ""
+        brush = toolbox.brush
+        if brush is None or not brush.about.has_tip:
+            return f"{toolbox.tool.label}: {toolbox.tool.tip}"
+        px = 2.0 * brush.radius_mm * self.view.camera.px_per_mm
+        size = f"{px:,.0f}" if px >= 10.0 else f"{px:.1f}"
+        return f"{toolbox.tool.label}, {size} px wide on the screen: {toolbox.tool.tip}"
 
     def _previewed(self) -> Preview | None:
         """Return the change that is held in a panel, or that the brush or the plan will make."""

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Key
 from stippler.editor.events import NO_MODS
 from stippler.ui.actions.parts import Parts
-from stippler.ui.panels.layout import TOOL
 
 _RESIZE_PERCENT = 10.0
 _NUDGE_MM = 0.1
@@ -77,11 +76,7 @@ def tool_commands(parts: Parts) -> Iterator[Command]:
     toolbox = parts.painting.toolbox
 
     def chooser(name: str) -> Callable[[], None]:
-        def choose() -> None:
-            toolbox.choose(name)
-            parts.show_panel(TOOL)
-
-        return choose
+        return lambda: toolbox.choose(name)
 
     def used(name: str) -> Callable[[], bool]:
         return lambda: toolbox.name == name

@@ -10,7 +10,9 @@ from imgui_bundle import imgui
 from stippler.editor.events import Event, Gone, KeyDown
 from stippler.editor.keymap import is_modifier
 from stippler.ui import theme
+from stippler.ui.fields import Fields
 from stippler.ui.look import Look
+from stippler.ui.number_control import Numbers
 from stippler.ui.theme import Theme
 from stippler.ui.window.imgui_input import feed
 from stippler.ui.window.window import Window
@@ -35,6 +37,10 @@ class Gui:
     Attributes
     ----------
     fonts : Fonts
+    numbers : Numbers
+        Which number of the panels has the keyboard.
+    fields : Fields
+        The controls that panels have.
     escape_level : int
         How many popups are open in a frame in which Esc is pressed, of which it is for the topmost;
         else 0.
@@ -47,6 +53,8 @@ class Gui:
         self._theme: Theme | None = None
         self._scale = 0.0
         self.escape_level = 0
+        self.numbers = Numbers()
+        self.fields = Fields()
         self._context = imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
@@ -110,6 +118,8 @@ class Gui:
 
         Keys for the canvas are kept from ImGui, or arrows would walk through panels.
         """
+        if self.numbers.take(event, is_typing=self.wants_keys):
+            return isinstance(event, KeyDown)
         if isinstance(event, KeyDown):
             if not (self.wants(event) or is_modifier(event.key)):
                 return False
@@ -140,6 +150,7 @@ class Gui:
         io.display_size = imgui.ImVec2(*self._window.size_units)
         io.display_framebuffer_scale = imgui.ImVec2(*self._window.ratio)
         imgui.new_frame()
+        self.numbers.begin(over_panels=self.wants_pointer)
         failure: Exception | None = None
         try:
             draw_ui()
