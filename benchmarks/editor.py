@@ -187,10 +187,10 @@ def gl_apart() -> Iterator[Apart]:
 
 def _frames(repeats: int) -> list[Figure]:
     from stippler.app import App
-    from stippler.stippling.plan import Plan
+    from stippler.drawing.style import Style
 
     with gl_apart() as gl:
-        app = App(Plan(), tone="linear", width_mm=148.0, size=_SIZE, offscreen=True)
+        app = App(Style(), tone="linear", width_mm=148.0, size=_SIZE, offscreen=True)
         try:
             still, moving = _own_and_all(app, gl, repeats)
         finally:

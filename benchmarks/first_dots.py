@@ -12,9 +12,9 @@ from PIL import Image
 
 from benchmarks.figures import Figure, median_s
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.stippling.halftone import FirstDots, pulse_density, supersampling
 from stippler.stippling.page_raster import PageRaster
-from stippler.stippling.plan import Plan
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.stipple import stages
 
@@ -28,7 +28,7 @@ def figures(quick: bool = False) -> list[Figure]:
     darkness = read_darkness()
     raster = PageRaster.of(Reference(darkness, 1000.0), _DOTS, None, bleeds=False)
     density = raster.density()
-    *_, relaxed = stages(Reference(darkness, 1000.0), Plan(n_dots=_DOTS), snapshots=False)
+    *_, relaxed = stages(Reference(darkness, 1000.0), Style(n_dots=_DOTS), snapshots=False)
     points = relaxed.position_mm
     results = [
         Figure(
@@ -95,8 +95,8 @@ def _worst_count(darkness: NDArray[np.float32], quick: bool) -> float:
     worst = 0.0
     for n in (100, 3000) if quick else (100, 1000, 3000, 30_000, 100_000):
         for picture in (darkness, darkness[250:650, 250:650].copy()):
-            plan = Plan(n_dots=n, iterations=2)
-            *_, last = stages(Reference(picture, 100.0), plan, snapshots=False)
+            style = Style(n_dots=n, iterations=2)
+            *_, last = stages(Reference(picture, 100.0), style, snapshots=False)
             worst = max(worst, 100.0 * abs(len(last.position_mm) - n) / n)
     return worst
 
@@ -110,7 +110,7 @@ def _longest(darkness: NDArray[np.float32]) -> float:
 
     def run() -> float:
         longest, before = 0.0, time.perf_counter()
-        for progress in stages(Reference(cut, 148.0), Plan(n_dots=_DOTS, iterations=1)):
+        for progress in stages(Reference(cut, 148.0), Style(n_dots=_DOTS, iterations=1)):
             now = time.perf_counter()
             if progress.stage != "relax":
                 longest = max(longest, now - before)

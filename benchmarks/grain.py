@@ -19,8 +19,8 @@ from stippler.analysis.grain import measure_grain
 from stippler.analysis.spectrum import measure_spectrum
 from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.resources import assets
-from stippler.stippling.plan import Plan
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.relax_all import relaxed_all
 from stippler.stippling.stipple import stages
@@ -64,8 +64,8 @@ def figures(quick: bool = False) -> list[Figure]:
 
 def _grey(darkness: float, spacing: str, seed: int) -> dict[str, float]:
     reference = Reference(np.full((SIDE, SIDE), darkness, np.float32), float(SIDE))
-    plan = Plan(n_dots=DOTS, spacing=spacing, seed=seed)
-    *_, last = stages(reference, plan, snapshots=False)
+    style = Style(n_dots=DOTS, spacing=spacing, seed=seed)
+    *_, last = stages(reference, style, snapshots=False)
     points, radii = np.array(last.position_mm), last.radius_mm.astype(np.float64)
     grain = measure_grain(points)
     spectrum = measure_spectrum(points, (0.0, 0.0, float(SIDE), float(SIDE)))
@@ -103,7 +103,7 @@ def _after_many_steps(n: int = 10_000, steps: int = 320) -> list[Figure]:
 def _relax_all(presses: int) -> list[Figure]:
     darkness = read_darkness(assets() / "samples" / "honey-bee.jpg", 800)
     reference = Reference(darkness.astype(np.float32), 148.0)
-    *_, last = stages(reference, Plan(n_dots=20_000), snapshots=False)
+    *_, last = stages(reference, Style(n_dots=20_000), snapshots=False)
     points, radii = np.array(last.position_mm), np.array(last.radius_mm)
     n, page = len(points), np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
     page *= [reference.width_mm, reference.height_mm]

@@ -22,7 +22,7 @@ from benchmarks.figures import Figure
 from stippler.app import App
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.window.scripted_host import Host
 
 _SIZE = (1280, 800)
@@ -90,7 +90,7 @@ def _desk(
 ) -> Iterator[_Desk]:
     """Open an editor on about so many dots; tell `opened` what their first frame took."""
     with gl_apart() as gl:
-        app = App(Plan(), tone="linear", width_mm=_PAGE.width_mm, size=_SIZE, offscreen=True)
+        app = App(Style(), tone="linear", width_mm=_PAGE.width_mm, size=_SIZE, offscreen=True)
         try:
             desk = _Desk(app, gl)
             desk.fill(n)

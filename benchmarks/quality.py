@@ -13,8 +13,8 @@ from benchmarks.figures import Figure
 from benchmarks.scorer import measure
 from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.resources import assets
-from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress, stages
 from stippler.stippling.tone import DotRule
 
@@ -44,16 +44,16 @@ def figures(quick: bool = False) -> list[Figure]:
     for n, promise in ((10_000, _TEN), (50_000, _FIFTY)):
         if n == 50_000 and quick:
             continue
-        results += _figures(f"sphere, {n:,} dots", sphere, Plan(n_dots=n), promise)
+        results += _figures(f"sphere, {n:,} dots", sphere, Style(n_dots=n), promise)
         radius = single_radius(sphere, n)
-        single = Plan(size_range_mm=(radius, radius))
+        single = Style(size_range_mm=(radius, radius))
         results += _figures(f"sphere, one size, about {n:,}", sphere, single, {})
     for name in SAMPLES[:1] if quick else SAMPLES:
         for n, promise in ((10_000, _TEN), (50_000, _FIFTY)):
             if n == 50_000 and quick:
                 continue
             picture = read_darkness(assets() / "samples" / name, SAMPLE_PX)
-            results += _figures(f"{Path(name).stem}, {n:,} dots", picture, Plan(n_dots=n), promise)
+            results += _figures(f"{Path(name).stem}, {n:,} dots", picture, Style(n_dots=n), promise)
     return results
 
 
@@ -65,10 +65,10 @@ def read_darkness(path: Path, longest_px: int = 0) -> NDArray[np.float64]:
     return 1.0 - np.asarray(image, np.float64) / 255.0
 
 
-def draw(darkness: NDArray[np.float64], plan: Plan) -> Progress:
-    """Carry out a plan with a millimetre for each pixel, as the measure wants it."""
+def draw(darkness: NDArray[np.float64], style: Style) -> Progress:
+    """Carry out a style with a millimetre for each pixel, as the measure wants it."""
     reference = Reference(darkness.astype(np.float32), float(darkness.shape[1]))
-    *_, last = stages(reference, plan, snapshots=False)
+    *_, last = stages(reference, style, snapshots=False)
     return last
 
 
@@ -89,9 +89,9 @@ def single_radius(darkness: NDArray[np.float64], n: int) -> float:
 
 
 def _figures(
-    name: str, darkness: NDArray[np.float64], plan: Plan, promise: _Promise
+    name: str, darkness: NDArray[np.float64], style: Style, promise: _Promise
 ) -> list[Figure]:
-    found = score(darkness, draw(darkness, plan))
+    found = score(darkness, draw(darkness, style))
     results = []
     for key in _TEN:
         reach, stretch = promise.get(key, (None, None))

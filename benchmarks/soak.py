@@ -24,7 +24,7 @@ import numpy as np
 
 from stippler.app import App
 from stippler.drawing.drawing import Page
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 
 if TYPE_CHECKING:
     from benchmarks.figures import Figure
@@ -239,8 +239,8 @@ class Soak:
         os.environ["STIPPLER_CONFIG_DIR"] = str(folder / "config")
         self._log = Faults()
         logging.getLogger("stippler").addHandler(self._log)
-        plan = Plan(n_dots=3000, iterations=5)
-        self.app = App(plan, tone="linear", width_mm=100.0, size=_SIZE, offscreen=True)
+        style = Style(n_dots=3000, iterations=5)
+        self.app = App(style, tone="linear", width_mm=100.0, size=_SIZE, offscreen=True)
         self.hand = Hand(self.app, folder, seed)
         self.memory_mb: list[float] = []
         self.n_steps = 0

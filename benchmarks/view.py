@@ -26,9 +26,9 @@ def figures(quick: bool = False) -> list[Figure]:
 
 def _lens(repeats: int) -> list[Figure]:
     from stippler.app import App
-    from stippler.stippling.plan import Plan
+    from stippler.drawing.style import Style
 
-    app = App(Plan(), tone="linear", width_mm=200.0, size=_SIZE, offscreen=True)
+    app = App(Style(), tone="linear", width_mm=200.0, size=_SIZE, offscreen=True)
     try:
         _open(app)
         found = []

@@ -22,8 +22,8 @@ from stippler.analysis.spacing import measure_spacing  # noqa: E402
 from stippler.analysis.spectrum import measure_spectrum  # noqa: E402
 from stippler.drawing.drawing import Drawing  # noqa: E402
 from stippler.drawing.reference import Reference  # noqa: E402
+from stippler.drawing.style import Style  # noqa: E402
 from stippler.headless import render_image  # noqa: E402
-from stippler.stippling.plan import Plan  # noqa: E402
 from stippler.stippling.stipple import Progress, stages  # noqa: E402
 
 DOTS = 8000
@@ -99,7 +99,7 @@ even.
 
 def _draw(darkness: NDArray[np.float64], dots: int, **options: Any) -> Progress:
     reference = Reference(darkness.astype(np.float32), float(darkness.shape[1]))
-    *_, last = stages(reference, Plan(n_dots=dots, spacing="lloyd", **options), snapshots=False)
+    *_, last = stages(reference, Style(n_dots=dots, spacing="lloyd", **options), snapshots=False)
     return last
 
 

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.drawing import Drawing as _Drawing
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.errors import ParameterError
-from stippler.stippling.plan import DEFAULT_PEN, Plan
+from stippler.keywords import with_keywords
 from stippler.stippling.stipple import Progress, notes_on, stages
 from stippler.units import DEFAULT_WIDTH_MM
 
@@ -69,22 +70,15 @@ class Drawing(_Drawing):
         return b"".join(svg_chunks(self)).decode()
 
 
+@with_keywords
 def stipple(
     image: Any,
     dots: int | None = None,
     width: float = DEFAULT_WIDTH_MM,
     *,
-    size_range: tuple[float, float] | None = None,
-    iterations: int = 20,
-    seed: int = 1,
     tone: Tone = "illustration",
-    first_dots: str = "pulse-density",
-    growth: str = "circular",
-    start: str = "top",
-    sizes: str = "tone",
-    spacing: str = "even",
-    weighted: bool = True,
-    pen: str = DEFAULT_PEN,
+    style: Style | None = None,
+    **keywords: Any,
 ) -> Drawing:
     """Turn a picture into a stipple drawing.
 
@@ -94,33 +88,15 @@ def stipple(
         Arrays hold grey or RGB, with or without alpha: integers over their type's range, or
         floats from 0 (black) to 1 (white).
     dots : int, optional
-        How many; None: 20,000, or what the size range asks for.
+        How many; None: as many as suit the page and the picture, or what the size range asks for.
     width : float, mm
         Width of the page; the height follows.
-    size_range : (min, max), mm, optional
-        Dot radii; None: a range of 1:2 that meets the tone with that number of dots.
-    iterations : int
-        Relaxation steps.
-    seed : int
-        Same seed, same drawing, whatever the number of threads.
     tone : {"illustration", "linear", "perceptual"}
         As an illustrator would draw it, from the picture's own histogram, with deep parts just
         open; or true at arm's length: ink replaces the picture's light; or its encoded values.
-    first_dots : str
-        One of `stippler.stippling.plan.FIRST_DOTS`.
-    growth : {"circular", "triangular"}
-        How the regions of pulse-density modulation grow.
-    start : {"top", "border"}
-        Where pulse-density modulation begins.
-    sizes : {"tone", "regions"}
-        Sizes that meet the tone, or the paper's: by how far pulse-density regions had to grow.
-    spacing : {"even", "lloyd", "delaunay-mean", "springs"}
-        How dots are spaced: evenly without rows, by Lloyd's relaxation alone, or by the paper's
-        comparisons.
-    weighted : bool
-        Relax by the tone; False is the paper's form, whose light parts fill up.
-    pen : str
-        Whose shapes the dots have: technical-pen (round), quill, brush, rough-paper or stick.
+    style : Style, optional
+        How it is drawn; what is given beside it counts before it.
+    {keywords}
 
     Returns
     -------
@@ -131,45 +107,35 @@ def stipple(
     PictureError
         If the picture cannot be read.
     ParameterError
-        If a value is outside its range.
+        If a value is outside its range, or a keyword is unknown.
 
     Notes
     -----
-    Deussen et al. 2000, sections 4.2 and 4.3.
+    Same values, same drawing, whatever the number of threads. Deussen et al. 2000, sections 4.2
+    and 4.3.
     """
-    plan = Plan(
-        n_dots=dots,
-        size_range_mm=size_range,
-        iterations=iterations,
-        seed=seed,
-        first_dots=first_dots,
-        growth=growth,
-        start=start,
-        sizes=sizes,
-        spacing=spacing,
-        weighted=weighted,
-        pen=pen,
-    )
-    return draw(image, plan, tone=tone, width_mm=width)
+    if dots is not None:
+        keywords["dots"] = dots
+    return draw(image, Style.of(style, **keywords), tone=tone, width_mm=width)
 
 
 def draw(
     image: Any,
-    plan: Plan,
+    style: Style,
     *,
     tone: str,
     width_mm: float,
     show: Callable[[str, int, int], None] | None = None,
 ) -> Drawing:
-    """Carry out a plan."""
+    """Draw a picture in a style."""
     told: list[str] = []
     reference = _reference(image, tone, width_mm, told)
     last: Progress | None = None
-    for last in stages(reference, plan, snapshots=False):
+    for last in stages(reference, style, snapshots=False):
         if show is not None:
             show(last.stage, last.done, last.total)
     assert last is not None, "stages() yields at least its end"
-    drawing = Drawing.from_reference(reference, last.position_mm, last.radius_mm, plan)
+    drawing = Drawing.from_reference(reference, last.position_mm, last.radius_mm, style)
     drawing.notes = (*told, *notes_on(last))
     if isinstance(image, str | PathLike):
         drawing.inputs = (Path(image),)

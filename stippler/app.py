@@ -19,7 +19,7 @@ from stippler.ui.window.window import Window
 from stippler.warm import is_warm
 
 if TYPE_CHECKING:
-    from stippler.stippling.plan import Plan
+    from stippler.drawing.style import Style
 
 _AT_REST_S = 1.0  # the next frame is so far off that nobody sees a pause
 _FAREWELL_S = 2.0  # for a worker that decodes a large picture; it is let go of after that
@@ -30,7 +30,7 @@ class App:
 
     Parameters
     ----------
-    plan : Plan
+    style : Style
         What to make of the first picture.
     tone : {"illustration", "linear", "perceptual"}
     width_mm : float
@@ -49,7 +49,7 @@ class App:
 
     def __init__(
         self,
-        plan: Plan,
+        style: Style,
         *,
         tone: str,
         width_mm: float,
@@ -68,7 +68,7 @@ class App:
         self.session = Session(
             self.worker,
             self.exporter,
-            plan,
+            style,
             tone=tone,
             width_mm=width_mm,
             stipple=partial(stipple_picture, is_warm=is_warm),
@@ -112,7 +112,7 @@ class App:
 
 
 def edit(
-    path: Path | None, plan: Plan, *, tone: str, width_mm: float, given: Collection[str] = ()
+    path: Path | None, style: Style, *, tone: str, width_mm: float, given: Collection[str] = ()
 ) -> int:
     """Open the editor on a picture or a drawing; return the exit code when its window is closed.
 
@@ -129,8 +129,8 @@ def edit(
     from stippler.files.native.recovery import recovery_root
 
     kept = Preferences.load(settings_folder())
-    plan, tone, width_mm = kept.begin(plan, tone, width_mm, given)
-    app = App(plan, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root())
+    style, tone, width_mm = kept.begin(style, tone, width_mm, given)
+    app = App(style, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root())
     try:
         app.step()  # a first frame before the worker takes its share of the processor
         app.open(path)

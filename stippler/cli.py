@@ -12,17 +12,15 @@ import typer
 from typer.exceptions import TyperException
 
 from stippler.cli_check import calibrate, check
-from stippler.cli_options import export_names, with_export_options
+from stippler.cli_options import Asked, with_export_options, with_style_options
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.machine.numba_import import skip_blas
 from stippler.names import shown
 from stippler.spooled import STDIN, at_hand
 from stippler.stopping import fail, stops
-from stippler.units import DEFAULT_WIDTH_MM
 
 if TYPE_CHECKING:
     from stippler.drawing.page import Page
-    from stippler.stippling.plan import Plan
 
 
 _INTERRUPTED = 130
@@ -36,53 +34,7 @@ app = typer.Typer(
     epilog="stippler photo.jpg opens the editor; stippler alone opens it on a sample.",
 )
 
-Dots = Annotated[
-    int | None, typer.Option(help="Number of dots; 20,000, or what --size-range asks for.")
-]
-SizeRange = Annotated[
-    str | None,
-    typer.Option(metavar="MIN:MAX", help="Dot radii in mm; 1:2, as large as --dots asks for."),
-]
-Width = Annotated[float, typer.Option(help="Page width in mm; the height follows.")]
-Iterations = Annotated[int, typer.Option(help="Relaxation steps.")]
 Seed = Annotated[int, typer.Option(help="Same seed, same drawing.")]
-ToneOption = Annotated[
-    str,
-    typer.Option(
-        metavar="illustration|linear|perceptual",
-        help="As an illustrator draws it, true at arm's length, or as in the file.",
-    ),
-]
-FirstDots = Annotated[
-    str,
-    typer.Option(metavar="METHOD", help="pulse-density, floyd-steinberg, random or hexagonal."),
-]
-Growth = Annotated[
-    str, typer.Option(metavar="circular|triangular", help="How pulse-density regions grow.")
-]
-Start = Annotated[str, typer.Option(metavar="top|border", help="Where pulse-density begins.")]
-Sizes = Annotated[
-    str,
-    typer.Option(
-        metavar="tone|regions", help="Dot sizes solved for the tone, or the paper's by region."
-    ),
-]
-Spacing = Annotated[
-    str,
-    typer.Option(
-        metavar="METHOD",
-        help="even (no rows), or lloyd, delaunay-mean, springs, as in the paper.",
-    ),
-]
-Unweighted = Annotated[
-    bool, typer.Option("--unweighted", help="Relax as the paper does, whatever the tone.")
-]
-PenOption = Annotated[
-    str,
-    typer.Option(
-        "--pen", metavar="NAME", help="technical-pen, quill, brush, rough-paper or stick."
-    ),
-]
 
 
 def _version(shown: bool) -> None:
@@ -120,59 +72,18 @@ def _options(
     pass
 
 
-_VALUES = {
-    "dots": "n_dots",
-    "size_range": "size_range_mm",
-    "width": "width_mm",
-    "unweighted": "weighted",
-}
-
-
-def _given(context: typer.Context) -> set[str]:
-    """Return the values that stand on the command line, by the names that plans have for them."""
-    return {
-        _VALUES.get(name, name)
-        for name in context.params
-        if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
-    }
-
-
 @app.command()
+@with_style_options
 def edit(
     context: typer.Context,
     file: Annotated[
         Path | None, typer.Argument(help="A picture or a drawing; without one, a sample.")
     ] = None,
-    dots: Dots = None,
-    size_range: SizeRange = None,
-    width: Width = DEFAULT_WIDTH_MM,
-    iterations: Iterations = 20,
-    seed: Seed = 1,
-    tone: ToneOption = "illustration",
-    first_dots: FirstDots = "pulse-density",
-    growth: Growth = "circular",
-    start: Start = "top",
-    sizes: Sizes = "tone",
-    spacing: Spacing = "even",
-    unweighted: Unweighted = False,
-    pen: PenOption = "technical-pen",
+    *,
+    asked: Asked,
 ) -> None:
     """Open the editor."""
-    plan = _plan(
-        n_dots=dots,
-        size_range_mm=_size_range(size_range),
-        iterations=iterations,
-        seed=seed,
-        first_dots=first_dots,
-        growth=growth,
-        start=start,
-        sizes=sizes,
-        spacing=spacing,
-        weighted=not unweighted,
-        pen=pen,
-    )
-    _check_page(tone, width)
-    given = _given(context)
+    _check_page(asked)
     with at_hand(file or _sample()) as picture:
         if file is not None:
             from stippler.files.read.picture import check_picture
@@ -182,11 +93,17 @@ def edit(
                 check_picture(picture)  # before a window opens
         from stippler.app import edit as open_editor
 
-        raise typer.Exit(open_editor(picture, plan, tone=tone, width_mm=width, given=given))
+        raise typer.Exit(
+            open_editor(
+                picture, asked.style, tone=asked.tone, width_mm=asked.width_mm,
+                given=set(asked.options),
+            )
+        )  # fmt: skip
 
 
 @app.command()
 @with_export_options
+@with_style_options
 def render(
     context: typer.Context,
     file: Annotated[Path, typer.Argument(help="A picture, or a drawing (.stipple, .csv).")],
@@ -198,20 +115,8 @@ def render(
         str,
         typer.Option("--format", metavar="NAME", help="Format, whatever the ending."),
     ] = "",
-    dots: Dots = None,
-    width: Width = DEFAULT_WIDTH_MM,
-    iterations: Iterations = 20,
-    seed: Seed = 1,
-    tone: ToneOption = "illustration",
-    size_range: SizeRange = None,
-    first_dots: FirstDots = "pulse-density",
-    growth: Growth = "circular",
-    start: Start = "top",
-    sizes: Sizes = "tone",
-    spacing: Spacing = "even",
-    unweighted: Unweighted = False,
-    pen: PenOption = "technical-pen",
     *,
+    asked: Asked,
     exports: dict[str, Any],
 ) -> None:
     """Turn a picture into a drawing, or a drawing into a file of another kind, without a window."""
@@ -223,31 +128,18 @@ def render(
 
     with at_hand(file) as at:
         if is_drawing(at):
-            _write_again(at, output, form, exports, _given(context))
+            _write_again(at, output, form, exports, asked)
             return
-        plan = _plan(
-            n_dots=dots,
-            size_range_mm=_size_range(size_range),
-            iterations=iterations,
-            seed=seed,
-            first_dots=first_dots,
-            growth=growth,
-            start=start,
-            sizes=sizes,
-            spacing=spacing,
-            weighted=not unweighted,
-            pen=pen,
-        )
-        _check_page(tone, width)
+        _check_page(asked)
         from stippler.export import check_size
         from stippler.progress import stages_shown
 
-        check_size(output, _page_of(at, width), form, **exports)
+        check_size(output, _page_of(at, asked.width_mm), form, **exports)
         with stages_shown() as show:
             from stippler.api import draw
 
             show("picture", 0, 1)
-            drawing = draw(at, plan, tone=tone, width_mm=width, show=show)
+            drawing = draw(at, asked.style, tone=asked.tone, width_mm=asked.width_mm, show=show)
             show("write", 0, 1)
             drawing.save(output, form=form, **exports)
             stops.written = True
@@ -257,14 +149,13 @@ def render(
 
 
 def _write_again(
-    file: Path, output: Path, form: str, exports: dict[str, Any], given: set[str]
+    file: Path, output: Path, form: str, exports: dict[str, Any], asked: Asked
 ) -> None:
     """Write a drawing to a file of another kind."""
-    making = given - {"file", "output", "form", *export_names()}
-    if making:
+    if asked.options:
         raise ParameterError(
             f"is of a picture, and {shown(file)} is a drawing already",
-            f"--{min(making).replace('_', '-')}",
+            min(asked.options.values()),
             "leave it out",
         )
     from stippler.api import open as open_drawing
@@ -297,6 +188,7 @@ def scale(
 
 
 @app.command()
+@with_style_options
 def stats(
     context: typer.Context,
     file: Annotated[Path, typer.Argument(help="A .csv from render, or a picture to draw.")],
@@ -304,54 +196,32 @@ def stats(
     reference: Annotated[
         Path | None, typer.Option(help="For a .csv: the picture that its ink should meet.")
     ] = None,
-    dots: Dots = None,
-    width: Width = DEFAULT_WIDTH_MM,
-    iterations: Iterations = 20,
-    seed: Seed = 1,
-    tone: ToneOption = "illustration",
-    size_range: SizeRange = None,
-    first_dots: FirstDots = "pulse-density",
-    growth: Growth = "circular",
-    start: Start = "top",
-    sizes: Sizes = "tone",
-    spacing: Spacing = "even",
-    unweighted: Unweighted = False,
+    *,
+    asked: Asked,
 ) -> None:
     """Print the number of dots, their spacing, spectrum and tone error.
 
     A picture is drawn as render would draw it with the same options, and nothing is written. For a
     .csv, --reference, --width and --tone say what it was drawn from.
     """
-    _check_page(tone, width)
+    _check_page(asked)
     with at_hand(file) as at, at_hand(reference or file) as seen:
+        from stippler import stats as statistics
+
         if _is_table(file, at):
-            given = _given(context) - {"file", "as_json", "reference", "width_mm", "tone"}
-            if given:
+            if asked.options.keys() - {"width_mm", "tone"}:
                 raise ParameterError(
                     "is drawn already", file, "leave out all but --reference, --width and --tone"
                 )
-            from stippler import stats as statistics
-
-            picture = None if reference is None else seen
-            report = statistics.of_table(at, picture, tone=tone, width_mm=width)
+            report = statistics.of_table(
+                at, None if reference is None else seen, tone=asked.tone, width_mm=asked.width_mm
+            )
         else:
             if reference is not None:
                 raise ParameterError("is for a .csv", "reference", "a picture is its own")
-            plan = _plan(
-                n_dots=dots,
-                size_range_mm=_size_range(size_range),
-                iterations=iterations,
-                seed=seed,
-                first_dots=first_dots,
-                growth=growth,
-                start=start,
-                sizes=sizes,
-                spacing=spacing,
-                weighted=not unweighted,
+            report, notes = statistics.of_picture(
+                at, asked.style, tone=asked.tone, width_mm=asked.width_mm
             )
-            from stippler import stats as statistics
-
-            report, notes = statistics.of_picture(at, plan, tone=tone, width_mm=width)
             for note in notes:
                 _note(file, note)
     typer.echo(statistics.as_json(report) if as_json else statistics.as_text(report))
@@ -391,24 +261,6 @@ def _sample() -> Path:
     return assets() / "samples" / "ammonite.png"
 
 
-def _plan(**values: Any) -> Plan:
-    from stippler.stippling.plan import Plan
-
-    return Plan(**values)
-
-
-def _size_range(text: str | None) -> tuple[float, float] | None:
-    if text is None:
-        return None
-    low, colon, high = text.partition(":")
-    try:
-        return float(low), float(high if colon else low)
-    except ValueError:
-        raise ParameterError(
-            f"{text!r} is no range", "size range", "give MIN:MAX in mm, such as 0.15:0.3"
-        ) from None
-
-
 def _input(file: Path) -> str | Path:
     """Return a name under which an input can be told from outputs."""
     return "/dev/fd/0" if str(file) == STDIN else file
@@ -438,12 +290,12 @@ def _note(file: Path, note: str) -> None:
     fail(f"{shown(file)}: {note}", 0)
 
 
-def _check_page(tone: str, width_mm: float) -> None:
-    from stippler.drawing.drawing import Page
+def _check_page(asked: Asked) -> None:
+    from stippler.drawing.page import Page
     from stippler.files.read.picture import check_tone
 
-    check_tone(tone)
-    Page(width_mm, 1.0)
+    check_tone(asked.tone)
+    Page(asked.width_mm, 1.0)
 
 
 def run(args: list[str]) -> int:

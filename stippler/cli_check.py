@@ -19,7 +19,15 @@ COLUMN = Annotated[str | None, typer.Option(help="Which of the profile's widths.
 WIDTH = Annotated[float | None, typer.Option(metavar="MM", help="Width in print.")]
 LEAST_DOT = Annotated[float | None, typer.Option(metavar="MM", help="Least diameter of dots.")]
 LEAST_GAP = Annotated[float, typer.Option(metavar="MM", help="Least gap between dots.")]
-GAIN = Annotated[float, typer.Option(metavar="MM", help="How much edges grow as ink spreads.")]
+GAIN = Annotated[
+    float | None, typer.Option(metavar="MM", help="How much edges grow as ink spreads.")
+]
+PRESS = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Gain and least dot of a calibrated press.")
+]
+NAME = Annotated[
+    str, typer.Option(metavar="PRESS", help="Keep the gain under a name, for --press.")
+]
 DPI = Annotated[float | None, typer.Option(help="Of a 1-bit picture.")]
 SMALLER = Annotated[bool, typer.Option("--compensate", help="Make dots smaller by the gain, too.")]
 MEASURED = Annotated[
@@ -34,12 +42,14 @@ def check(
     print_width: WIDTH = None,
     least_dot: LEAST_DOT = None,
     least_gap: LEAST_GAP = 0.05,
-    gain: GAIN = 0.01,
+    gain: GAIN = None,
+    press: PRESS = None,
     dpi: DPI = None,
     compensate: SMALLER = False,
     output: OUTPUT = None,
 ) -> None:
     """Count what print would spoil; with -o, write the drawing with that repaired."""
+    gain, least_dot = _with_press(press, gain, least_dot)
     process = _process(profile, column, print_width, least_dot, least_gap, gain, dpi)
     from dataclasses import replace
 
@@ -63,6 +73,19 @@ def check(
     drawing.inputs = (file,)
     drawing.save(output)
     typer.echo(f"repaired; left: {'; '.join(left) or 'nothing'}")
+
+
+def _with_press(
+    name: str | None, gain: float | None, least_dot: float | None
+) -> tuple[float, float | None]:
+    """Return gain and least dot, a press's where they are not given."""
+    if name is not None:
+        from stippler.files.presses import press_named
+
+        press = press_named(name)
+        gain = press.gain_mm if gain is None else gain
+        least_dot = press.least_dot_mm or None if least_dot is None else least_dot
+    return 0.01 if gain is None else max(gain, 0.0), least_dot
 
 
 def _process(
@@ -89,7 +112,12 @@ def _process(
     return Process(print_width, least, least_gap, gain, dpi)
 
 
-def calibrate(output: OUTPUT = None, measured: MEASURED = "") -> None:
+def calibrate(
+    output: OUTPUT = None,
+    measured: MEASURED = "",
+    name: NAME = "",
+    least_dot: LEAST_DOT = None,
+) -> None:
     """Write a sheet of patches to print and measure; or tell the dot gain that was measured."""
     from stippler.files import checks
 
@@ -108,4 +136,11 @@ def calibrate(output: OUTPUT = None, measured: MEASURED = "") -> None:
             raise ParameterError(
                 f"{measured!r} is no list", "measured", "such as 0.1,0.2"
             ) from None
+        if name:
+            from stippler.files.presses import calibrated, keep_press
+
+            keep_press(calibrated(name, values, least_dot or 0.0))
+            typer.echo(f"--press {name!r} is kept")
         typer.echo(f"--gain {checks.gain_of(values):.4f}")
+    elif name:
+        raise ParameterError("is of what was measured", "name", "give --measured, too")

@@ -1,41 +1,150 @@
-"""Options of file formats on the command line, made from where they are declared."""
+"""Options on the command line that are made from where they are declared: styles and formats."""
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 import typer
 
+from stippler.drawing.parameter import Kind, Parameter
+from stippler.drawing.picture_values import TONE, WIDTH
+from stippler.drawing.style import PARAMETERS, Style
+from stippler.errors import ParameterError
 from stippler.files.write.formats import FORMATS, every_option
 
 PANEL = "What is written"
 
+_TYPES: dict[Kind, type] = {
+    Kind.WHOLE: int,
+    Kind.NUMBER: float,
+    Kind.RANGE: str,
+    Kind.CHOICE: str,
+    Kind.FLAG: bool,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What to make of a picture, as asked for on the command line.
+
+    Attributes
+    ----------
+    options : dict of name to option
+        Those that stand there, by the names of the values they set.
+    """
+
+    style: Style
+    tone: str
+    width_mm: float
+    options: dict[str, str]
+
+
+def with_style_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of pictures and styles; it gets them as `asked`."""
+    parameters = (WIDTH, TONE, *PARAMETERS)
+    added = {_python_name(one): (one.name, one.option) for one in parameters}
+
+    def gather(values: dict[str, Any], context: typer.Context) -> Asked:
+        given = {name: pair for name, pair in added.items() if _is_given(context, name)}
+        style = Style(**{one.name: _value_of(one, values[_python_name(one)]) for one in PARAMETERS})
+        options = dict(given.values())
+        return Asked(style, values["tone"], values["width"], options)
+
+    return _with(function, "asked", [*map(_option, parameters)], gather)
+
 
 def with_export_options(function: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of all formats; it gets those given as `exports`, a dict."""
+
+    def gather(values: dict[str, Any], _: typer.Context) -> dict[str, Any]:
+        return {name: value for name, value in values.items() if value is not None}
+
+    return _with(function, "exports", [_export_option(name) for name in every_option()], gather)
+
+
+def _with(
+    function: Callable[..., None],
+    slot: str,
+    added: list[inspect.Parameter],
+    gather: Callable[[dict[str, Any], typer.Context], Any],
+) -> Callable[..., None]:
+    """Give a command more options; it gets what is gathered from them under the slot's name."""
     signature = inspect.signature(function, eval_str=True)
-    own = [p for p in signature.parameters.values() if p.name != "exports"]
-    added = {name: _parameter(name) for name in every_option()}
+    own = [p for p in signature.parameters.values() if p.name != slot]
+    names = [p.name for p in added]
 
-    def command(**values: Any) -> None:
-        exports = {name: values.pop(name) for name in added}
-        function(**values, exports={k: v for k, v in exports.items() if v is not None})
+    def command(context: typer.Context, **values: Any) -> None:
+        gathered = gather({name: values.pop(name) for name in names}, context)
+        function(context, **values, **{slot: gathered})
 
-    parameters = [*own, *added.values()]
+    parameters = [*own, *added]
     command.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     command.__annotations__ = {p.name: p.annotation for p in parameters}
     command.__doc__, command.__name__ = function.__doc__, function.__name__
     return command
 
 
-def export_names() -> set[str]:
-    """Return the names of all options of formats."""
-    return set(every_option())
+def _is_given(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
-def _parameter(name: str) -> inspect.Parameter:
+# --- styles -----------------------------------------------------------------------------------
+
+
+def _python_name(about: Parameter) -> str:
+    return about.flag.lstrip("-").replace("-", "_") if about.flag else about.word
+
+
+def _option(about: Parameter) -> inspect.Parameter:
+    metavar = None
+    if about.kind is Kind.CHOICE:
+        short = "|".join(about.values)
+        metavar = short if len(short) <= 32 else "NAME"
+    elif about.kind is Kind.RANGE:
+        metavar = "MIN:MAX"
+    elif about.kind is Kind.NUMBER:
+        metavar = about.unit.upper() or None
+    text = about.help
+    if metavar == "NAME":
+        text += f" One of {', '.join(about.values)}."
+    default = about.default
+    if about.kind is Kind.FLAG:
+        default = False
+    info = typer.Option(about.option, help=text, metavar=metavar)
+    kind: Any = _TYPES[about.kind]
+    return _keyword(_python_name(about), kind | None if default is None else kind, info, default)
+
+
+def _keyword(name: str, kind: Any, info: Any, default: Any) -> inspect.Parameter:
+    annotation: Any = Annotated[kind, info]
+    return inspect.Parameter(
+        name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation
+    )
+
+
+def _value_of(about: Parameter, value: Any) -> Any:
+    """Return what an option stands for."""
+    if about.kind is Kind.FLAG:
+        return about.default is not value if about.flag else value
+    if about.kind is Kind.RANGE and value is not None:
+        low, colon, high = value.partition(":")
+        try:
+            return float(low), float(high if colon else low)
+        except ValueError:
+            raise ParameterError(
+                f"{value!r} is no range", about.said_name, "give MIN:MAX in mm, such as 0.15:0.3"
+            ) from None
+    return value
+
+
+# --- formats ----------------------------------------------------------------------------------
+
+
+def _export_option(name: str) -> inspect.Parameter:
     option, formats = every_option()[name]
     help_text = option.help
     pictures = [one for one in FORMATS if not one.is_data]
@@ -48,5 +157,4 @@ def _parameter(name: str) -> inspect.Parameter:
         *flags, help=help_text, metavar=None if option.type is bool else metavar,
         show_default=False,
     )  # fmt: skip
-    kind: Any = Annotated[option.type | None, info]
-    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
+    return _keyword(name, option.type | None, info, None)

@@ -151,6 +151,7 @@ def _strips(
         made.callback(release_target, ctx, target)
         renderer.scene.set_page(page.width_mm, page.height_mm)
         renderer.scene.set_dots(drawing.dots)
+        renderer.scene.set_lines(drawing.lines)
         for top in range(0, size[1], rows):
             shape = (rows, size[0], channels)[: 2 if channels == 1 else 3]
             strip = np.empty(shape, np.uint8)

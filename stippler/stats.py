@@ -12,10 +12,10 @@ from stippler.analysis.report import Report, measure_against, measure_dots
 from stippler.api import draw
 from stippler.drawing.dots import Dots
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.errors import GeometryError
 from stippler.files.read.picture import read_picture
 from stippler.files.read.table import read_csv
-from stippler.stippling.plan import Plan
 
 _SAID = {
     "dots": "dots",
@@ -61,10 +61,10 @@ def of_table(path: Path, reference: Path | None, *, tone: str, width_mm: float) 
 
 
 def of_picture(
-    path: Path, plan: Plan, *, tone: str, width_mm: float
+    path: Path, style: Style, *, tone: str, width_mm: float
 ) -> tuple[Report, tuple[str, ...]]:
     """Draw a picture and measure the drawing; return what it falls short of, too."""
-    drawing = draw(path, plan, tone=tone, width_mm=width_mm)
+    drawing = draw(path, style, tone=tone, width_mm=width_mm)
     dots, picture = drawing.dots, drawing.reference
     assert picture is not None, "draw() keeps what it drew from"
     return measure_dots(dots.position_mm, dots.radius_mm) | _against(dots, picture), drawing.notes

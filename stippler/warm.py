@@ -113,14 +113,14 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     from stippler.brushes.warm_up import warm_up_brushes
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from stippler.stippling.plan import FIRST_DOTS, Plan
+    from stippler.drawing.style import FIRST_DOTS, Style
     from stippler.stippling.stipple import stages
 
     ramp = np.linspace(0, 1, 64 * 64, dtype=np.float32).reshape(64, 64)
     reference = Reference(ramp, 20.0)
 
     def draw(**options: Any) -> Drawing:
-        *_, last = stages(reference, Plan(n_dots=300, iterations=3, **options))
+        *_, last = stages(reference, Style(n_dots=300, iterations=3, **options))
         return Drawing.from_reference(reference, last.position_mm, last.radius_mm)
 
     yield "relaxation and tone", draw

@@ -15,7 +15,7 @@ SCRIPT = """
 import json, sys, tempfile
 import numpy as np
 import stippler
-from stippler.stippling.plan import FIRST_DOTS
+from stippler.drawing.style import FIRST_DOTS
 
 picture = np.random.default_rng(0).integers(0, 256, (50, 70, 3), np.uint8)
 white = np.full((40, 40), 255, np.uint8)

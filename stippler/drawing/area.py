@@ -41,8 +41,7 @@ class Area:
     hidden: bool = False
 
     def __post_init__(self) -> None:
-        if not _COLOUR.fullmatch(self.colour):
-            raise ParameterError(f"{self.colour!r} is no colour", "area", "give #rrggbb")
+        checked_colour(self.colour, "area")
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""
@@ -63,3 +62,9 @@ class Area:
     def renamed(self, name: str) -> Self:
         """Return it under another name."""
         return replace(self, name=name)
+
+
+def checked_colour(colour: str, of: str) -> None:
+    """Refuse what is no colour of a list."""
+    if not _COLOUR.fullmatch(colour):
+        raise ParameterError(f"{colour!r} is no colour", of, "give #rrggbb")

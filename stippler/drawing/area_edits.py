@@ -14,7 +14,9 @@ from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.planar.edits import Outcome, touched
 from stippler.drawing.planar.planar_map import Arc, PlanarMap
+from stippler.drawing.planar.slivers import LEAST_WIDTH_MM
 from stippler.drawing.planar.swept import dots_in_strip
+from stippler.errors import GeometryError
 
 _COLOURS = (
     "#c65d57", "#5d86c6", "#6aa86a", "#c9a24b", "#8d6bb3", "#4fa3a0", "#b3708f", "#7d8a4f",
@@ -70,6 +72,7 @@ def edit_areas(
     before = current_map(document)
     outcome = edit(before)
     after = outcome.map
+    refuse_locked(document.drawing, before, after)
     document.begin(label)
     try:
         _set_borders(document, after)
@@ -135,6 +138,21 @@ def _hand_over(document: Document, before: PlanarMap, after: PlanarMap) -> None:
     kept = area >= 0
     if kept.any():
         document.change("area", which[kept], area[kept].astype(np.int32))
+
+
+def refuse_locked(drawing: Drawing, before: PlanarMap, after: PlanarMap) -> None:
+    """Raise GeometryError if a locked area would have another outline.
+
+    Nodes that a neighbour's border sets on its border do not count.
+    """
+    held = [k for k in held_areas(drawing) if k in before.areas]
+    if not held:
+        return
+    for k in sorted(touched(before, after) & set(held)):
+        old, new = before.outline(k), after.outline(k)
+        if old.symmetric_difference(new).area > LEAST_WIDTH_MM * old.length:
+            name = drawing.areas[k].name
+            raise GeometryError("is locked", f"area {name}", "unlock it in the list of areas")
 
 
 def held_areas(drawing: Drawing) -> list[int]:

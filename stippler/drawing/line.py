@@ -13,6 +13,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.area import checked_colour
 from stippler.drawing.deformation import Deformation
 from stippler.drawing.planar.path import Path, path_of_cubics, pieces_of
 from stippler.errors import GeometryError, ParameterError
@@ -45,6 +46,10 @@ class Line:
         What dots keep from its edge.
     reach_mm : float
         From how far dots line up on it.
+    colour : str
+        In the list and of its nodes, as ``#rrggbb``; ink is ink.
+    locked, hidden : bool
+        A locked line is not changed by hand; a hidden one is neither seen nor written.
     """
 
     name: str
@@ -54,6 +59,9 @@ class Line:
     meeting: str = IGNORE
     distance_mm: float = 0.3
     reach_mm: float = 1.0
+    colour: str = "#2f6f78"
+    locked: bool = False
+    hidden: bool = False
 
     def __post_init__(self) -> None:
         if len(self.path) < 2 or self.length_mm <= 0.0:
@@ -69,6 +77,12 @@ class Line:
             raise ParameterError(
                 f"{self.meeting!r} is unknown", "line", f"of {', '.join(MEETINGS)}"
             )
+        checked_colour(self.colour, "line")
+
+    @property
+    def is_inked(self) -> bool:
+        """Whether it is drawn in ink."""
+        return self.printed and not self.hidden and max(self.width_mm) > 0.0
 
     @property
     def is_closed(self) -> bool:
@@ -152,7 +166,8 @@ class Line:
         return {
             "name": self.name, "path": self.path.to_json(), "width_mm": list(self.width_mm),
             "printed": self.printed, "meeting": self.meeting, "distance_mm": self.distance_mm,
-            "reach_mm": self.reach_mm,
+            "reach_mm": self.reach_mm, "colour": self.colour, "locked": self.locked,
+            "hidden": self.hidden,
         }  # fmt: skip
 
     @classmethod

@@ -20,7 +20,7 @@ def floats(values: ArrayLike, name: str) -> NDArray[np.float64]:
     ParameterError
         If they are none, or rows differ in length; the error calls them `name`.
     """
-    import numpy as np  # here, so that a plan is checked without it
+    import numpy as np  # here, so that a style is checked without it
 
     try:
         array = np.array(values)

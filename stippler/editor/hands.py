@@ -47,7 +47,8 @@ class Hands:
 
     def take_key(self, event: KeyDown) -> bool:
         """Take a key before commands have it: what is held keeps it, and Esc puts things away."""
-        if not (self._painting.is_busy or self._painting.leave(event)):
+        painting = self._painting
+        if not (painting.is_busy or painting.wants(event) or painting.leave(event)):
             return False
         self._offer(event, elsewhere=False)
         return True

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from stippler.drawing.document import Document
     from stippler.drawing.preview import Preview
     from stippler.drawing.shape_change import ShapeChange
+    from stippler.editor.tools.tool import Desk
 
 Action = Callable[["Document"], None]
 
@@ -255,6 +256,27 @@ class Painting:
         self._session.redo()
         if step is not None and history.redone is not step:
             self._memory.redone(step)
+
+    def at_desk(self, act: Callable[[Desk], None], px_per_mm: float) -> None:
+        """Do something as the tool at hand would."""
+        self._follow_session()
+        document = self._document
+        if document is None or not self._session.paintable or self.is_busy:
+            return
+        self._memory.note(document)
+        try:
+            act(self.toolbox.desk(document, lambda x, y: (x, y), px_per_mm))
+        except Exception as error:  # noqa: BLE001 - the stroke is taken back; the editor lives on
+            if document.in_stroke:
+                document.cancel()
+            self._report(error)
+        self._memory.keep(document)
+
+    def wants(self, event: KeyDown) -> bool:
+        """Return whether a key is for the tool at hand, before any command has it."""
+        if self._document is None or not self._session.paintable:
+            return False
+        return self.toolbox.wants(event, self._document)
 
     def leave(self, event: KeyDown) -> bool:
         """Take Escape while nothing is held: first the selection goes, then the brush."""

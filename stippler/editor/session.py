@@ -43,7 +43,7 @@ Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 class Stipple(Protocol):
     """Makes a job out of a picture, a style, and the picture's reference if it is known."""
 
-    def __call__(self, source: Source, plan: Style, reference: Reference | None) -> Iterator[Work]:
+    def __call__(self, source: Source, style: Style, reference: Reference | None) -> Iterator[Work]:
         """Return the job's results to come."""
         ...
 
@@ -55,14 +55,14 @@ class Session:
     ----------
     worker, exporter : Worker
         Where drawings are made and written; the owner closes them.
-    plan : Style
+    style : Style
         To begin with.
     stipple : callable
         Makes the jobs.
 
     Attributes
     ----------
-    plan : Style
+    style : Style
         As the panels show it; the drawing holds what its dots were asked for with.
     tone, width_mm, adjustment
         Likewise: how the next start takes the picture.
@@ -82,7 +82,7 @@ class Session:
         self,
         worker: Worker[Work],
         exporter: Worker[Path],
-        plan: Style,
+        style: Style,
         *,
         tone: str,
         width_mm: float,
@@ -94,7 +94,7 @@ class Session:
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
         self._make_ready = make_ready
-        self.plan = plan
+        self.style = style
         self.tone, self.width_mm = tone, width_mm
         self.adjustment = NEUTRAL
         self.activity: Activity = Idle()
@@ -142,7 +142,7 @@ class Session:
             self._read = Source(
                 Path(picture.name or "picture"), self.tone, self.width_mm, NEUTRAL, picture.data
             )
-        self.plan = document.drawing.style_of(0)
+        self.style = document.drawing.style_of(0)
         if lost is not None:
             self.messages.say(f"{lost.name} is as it was; save it to keep it")
 
@@ -157,7 +157,7 @@ class Session:
         self.activity = Idle()
 
     def start(self) -> None:
-        """Stipple the open picture by the plan, from the beginning."""
+        """Stipple the open picture by the style, from the beginning."""
         source = self._asked
         if source is None:
             self.messages.say("open a picture first", WARNING)
@@ -168,7 +168,7 @@ class Session:
         """Begin a drawing on an empty page."""
         self._supersede()
         request = self._worker.start(self._make_ready)
-        self._run(Opening(request, work.PREPARE, None, self.plan, page))
+        self._run(Opening(request, work.PREPARE, None, self.style, page))
 
     def relax(self, iterations: int, *, weighted: bool) -> None:
         """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""
@@ -181,7 +181,7 @@ class Session:
             return
         self._supersede()
         frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
-        spacing = self.plan.spacing
+        spacing = self.style.spacing
         request = self._worker.start(
             lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
         )
@@ -267,10 +267,10 @@ class Session:
             self._end("stopped")
             self.messages.say("stopped; the dots that are there stay")
 
-    def edit_plan(self, **changes: Any) -> bool:
-        """Change fields of the plan; a value outside its range is refused with a line."""
+    def edit_style(self, **changes: Any) -> bool:
+        """Change fields of the style; a value outside its range is refused with a line."""
         try:
-            self.plan = replace(self.plan, **changes)
+            self.style = replace(self.style, **changes)
         except ParameterError as error:
             self.messages.say(str(error), WARNING)
             return False
@@ -445,7 +445,7 @@ class Session:
         if asked is None:
             return False
         style = job.style if isinstance(job, Opening | Making) else self._style
-        return asked != self._as_wanted(asked) or style != self.plan
+        return asked != self._as_wanted(asked) or style != self.style
 
     # --- inside -----------------------------------------------------------------------------
 
@@ -467,7 +467,7 @@ class Session:
     def _begin(self, source: Source) -> None:
         self._supersede()
         known = self.reference if source.is_read_as(self._read) else None
-        style, stipple = self.plan, self._stipple
+        style, stipple = self.style, self._stipple
         request = self._worker.start(lambda: stipple(source, style, known))
         if known is None:
             self._run(Opening(request, work.READ, source, style))
@@ -513,7 +513,7 @@ class Session:
         from stippler.drawing.document import Document
         from stippler.drawing.drawing import Drawing
 
-        drawing = Drawing.blank(page, self.plan)
+        drawing = Drawing.blank(page, self.style)
         drawing.reference = reference
         if source is not None and (self._read is None or self._read.path != source.path):
             self.adjustment = source.adjustment

@@ -17,7 +17,6 @@ from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import ParameterError
 from stippler.files.write.raster import bit_strips, grey_strips
 from stippler.files.write.sheet import Sheet, sheet_of
-from stippler.stippling.tour import tour
 
 Rows = NDArray[np.int64]
 
@@ -199,19 +198,9 @@ def enlarged(drawing: Drawing, process: Process) -> Dots:
     Which of them stay is decided along a short way through them, as error diffusion does, so that
     they stay evenly spread.
     """
-    dots = drawing.dots.copy()
-    least = np.float32(process.least_dot_mm / 2 / process.scale(drawing))
-    small = np.flatnonzero(dots.radius_mm < least * (1 - 1e-6))
-    if not len(small):
-        return dots
-    small = small[tour(dots.position_mm[small])]
-    shares = (dots.radius_mm[small] / least).astype(np.float64) ** 2
-    filled = np.floor(np.cumsum(shares) + 0.5)
-    stays = np.diff(filled, prepend=0.0) > 0
-    dots.radius_mm[small[stays]] = least
-    kept = np.ones(len(dots), np.bool_)
-    kept[small[~stays]] = False
-    return dots.take(kept)
+    from stippler.files.write.press import thinned
+
+    return thinned(drawing.dots, process.least_dot_mm / 2 / process.scale(drawing)).copy()
 
 
 def parted(drawing: Drawing, process: Process) -> Dots:
@@ -325,13 +314,11 @@ def _patch_ink(share: float, gain: float) -> float:
 
 
 def compensated(drawing: Drawing, process: Process) -> Dots:
-    """Return dots so much smaller that they print as large as drawn; none below a third."""
-    dots, gain = drawing.dots.copy(), process.gain_mm / process.scale(drawing)
-    radius = dots.radius_mm.astype(np.float64)
-    # an edge of half axes a and b grows by the gain all around: (a + g)(b + g) = area / pi
-    root = np.sqrt(dots.elongation.astype(np.float64))
-    half = gain * (root + 1 / root) / 2
-    inner = half * half - gain * gain + radius * radius
-    smaller = np.sqrt(np.maximum(inner, 0.0)) - half
-    dots.radius_mm[:] = np.maximum(smaller, radius / 3)
-    return dots
+    """Return dots that print as those drawn look: smaller by what ink spreads.
+
+    Those that the process would lose are fewer and larger, with the same printed ink.
+    """
+    from stippler.files.write.press import solved_dots
+
+    scale = process.scale(drawing)
+    return solved_dots(drawing.dots, process.gain_mm / scale, process.least_dot_mm / scale).copy()

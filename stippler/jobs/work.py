@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
+    from stippler.drawing.style import Style
     from stippler.files.native.recovery import Lost
     from stippler.stippling.fill import Filling
-    from stippler.stippling.plan import Plan
     from stippler.stippling.stipple import Progress
 
 PREPARE, READ = "prepare", "read"
@@ -93,7 +93,7 @@ class Work:
 
 
 def stipple_picture(
-    source: Source, plan: Plan, reference: Reference | None, *, is_warm: Callable[[], bool]
+    source: Source, style: Style, reference: Reference | None, *, is_warm: Callable[[], bool]
 ) -> Iterator[Work]:
     """Stipple a picture from the file, or from its reference where it has been read before.
 
@@ -111,7 +111,7 @@ def stipple_picture(
     from stippler.brushes.warm_up import warm_up_brushes
     from stippler.stippling.stipple import stages
 
-    for progress in stages(reference, plan):
+    for progress in stages(reference, style):
         yield Work(progress.stage, progress.done, progress.total, reference, progress)
     warm_up_brushes()
 
@@ -207,7 +207,7 @@ def _among(all_: NDArray[Any], rows: NDArray[np.intp], new: NDArray[Any] | None)
 
 def carry_on(
     reference: Reference,
-    plan: Plan,
+    style: Style,
     position_mm: NDArray[np.float64],
     radius_mm: NDArray[np.float32],
     n_done: int,
@@ -215,8 +215,8 @@ def carry_on(
     """Go on with a stippling whose dots have become the drawing's after so many steps."""
     from stippler.stippling.carry_on import carry_on
 
-    yield Work("relax", n_done, plan.iterations)
-    for made in carry_on(reference, plan, position_mm, radius_mm, n_done):
+    yield Work("relax", n_done, style.iterations)
+    for made in carry_on(reference, style, position_mm, radius_mm, n_done):
         solved = made.radius_mm if made.stage == "done" else None
         yield Work(made.stage, made.done, made.total, None, None, made.position_mm, solved)
 

@@ -17,7 +17,7 @@ from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.shapes.dot_shape import MAX_ELONGATION, MAX_ROUGH
 from stippler.render.dot_buffer import DotBuffer, Origin
 from stippler.render.frame import Frame
-from stippler.render.ink import MARGIN_PX, InkTarget
+from stippler.render.ink import MARGIN_PX
 from stippler.render.paper import Color
 from stippler.render.preview import PreviewUniforms, defines
 from stippler.render.shaders import Program
@@ -60,10 +60,9 @@ class DotsPass:
         span = ctx.info["GL_POINT_SIZE_RANGE"]
         self._reach_px = min(MARGIN_PX - 2.0, float(span[1]) / 2 - 1.0)
 
-    def draw(self, buffer: DotBuffer, frame: Frame, origin_mm: Origin, target: InkTarget) -> None:
-        """Gather the ink of all dots seen by a frame's camera."""
+    def draw(self, buffer: DotBuffer, frame: Frame, origin_mm: Origin, whole: Size) -> None:
+        """Add the ink of all dots seen by a frame's camera to the ink target in use, of a size."""
         camera, preview = frame.camera, frame.preview
-        whole = target.begin(frame.size_px)
         self.n_draw_calls = 0
         if buffer.n == 0:
             return

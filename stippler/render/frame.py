@@ -14,6 +14,7 @@ DESK: Color = (0.827, 0.816, 0.792)
 INK: Color = (0.086, 0.082, 0.094)
 FIXED: Color = (0.72, 0.30, 0.12)
 SELECTED: Color = (0.10, 0.42, 0.80)
+GUIDE: Color = (0.16, 0.55, 0.60)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +28,7 @@ class Frame:
     paper, desk, ink : (r, g, b)
         0..1, encoded for display.
     marks : (colour, colour) or None
-        Of fixed and of selected dots; None draws them like all others.
+        Of fixed and of selected dots; None draws them like all others, and no guides.
     dots : bool
         False leaves them out.
     preview : Preview or None

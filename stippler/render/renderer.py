@@ -1,4 +1,4 @@
-"""The passes of one frame and their order: dots, paper, reference, ink, marks."""
+"""The passes of one frame and their order: lines and dots, paper, reference, ink, marks."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import moderngl
 
 from stippler.drawing.preview import Preview
 from stippler.render.dots import DotsPass
-from stippler.render.frame import Frame
+from stippler.render.frame import GUIDE, Frame
 from stippler.render.ink import InkTarget
+from stippler.render.lines import LinesPass
 from stippler.render.paper import PaperPass
 from stippler.render.reference import ReferencePass
 from stippler.render.scene import Scene
@@ -31,6 +32,7 @@ class Renderer:
         self.scene = Scene(ctx)
         self._paper = PaperPass(ctx)
         self._reference = ReferencePass(ctx)
+        self._lines = LinesPass(ctx)
         self._dots = DotsPass(ctx)
         self._ink = InkTarget(ctx)
 
@@ -46,25 +48,36 @@ class Renderer:
     def draw(self, frame: Frame, framebuffer: moderngl.Framebuffer | None = None) -> None:
         """Draw a frame into a framebuffer, or the context's screen; it is left in use."""
         scene, camera, size_px = self.scene, frame.camera, frame.size_px
-        if frame.dots:
-            self._dots.draw(scene.dots, frame, scene.origin_mm, self._ink)
+        has_ink = frame.dots or not scene.lines.is_empty
+        if has_ink:
+            self._gather(frame)
         set_target(self._ctx, target := framebuffer or self._ctx.screen, size_px)
         target.clear(*frame.desk, 1.0)
         shows_reference = frame.opacity > 0 and scene.reference.is_set
         # The ink pass covers the page, unless a picture lies under it or its edge needs smoothing.
-        is_bare = frame.dots and not shows_reference and camera.rotation_rad == 0.0
+        is_bare = has_ink and not shows_reference and camera.rotation_rad == 0.0
         if frame.paper != frame.desk:
             colors = (frame.paper, frame.desk)
             self._paper.draw(camera, size_px, scene.page_mm, colors, edge_only=is_bare)
         if shows_reference:
             self._reference.draw(scene.reference, frame)
-        if frame.dots:
+        if has_ink:
             ground = frame.paper if is_bare else None
             self._ink.lay(camera, size_px, scene.page_mm, frame.ink, ground)
-            if frame.marks:
-                self._dots.draw_marks(scene.dots, frame, scene.origin_mm, frame.marks)
+        if frame.marks and frame.dots:
+            self._dots.draw_marks(scene.dots, frame, scene.origin_mm, frame.marks)
+        if frame.marks:
+            self._lines.draw_guides(scene.lines, camera, size_px, scene.origin_mm, GUIDE)
+
+    def _gather(self, frame: Frame) -> None:
+        """Gather the ink of lines, then that of dots."""
+        scene = self.scene
+        whole = self._ink.begin(frame.size_px)
+        self._lines.draw(scene.lines, frame.camera, whole, scene.origin_mm)
+        if frame.dots:
+            self._dots.draw(scene.dots, frame, scene.origin_mm, whole)
 
     def release(self) -> None:
         """Free every GL object, those of the scene too."""
-        for one in (self._dots, self._ink, self._reference, self._paper, self.scene):
+        for one in (self._lines, self._dots, self._ink, self._reference, self._paper, self.scene):
             one.release()

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stippler.drawing import records
 from stippler.drawing.dots import Dots
 from stippler.drawing.reference import Reference
 from stippler.render.dot_buffer import DotBuffer
+from stippler.render.lines import LineBuffer
 from stippler.render.reference import ReferenceTexture
 
 if TYPE_CHECKING:
@@ -20,18 +23,20 @@ _NO_IDS: NDArray[np.int64] = np.empty(0, np.int64)
 
 
 class Scene:
-    """Page, dots and reference on the GPU.
+    """Page, lines, dots and reference on the GPU.
 
     Attributes
     ----------
     page_mm : (width, height)
     dots : DotBuffer
+    lines : LineBuffer
     reference : ReferenceTexture
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.page_mm = (1.0, 1.0)
         self.dots = DotBuffer(ctx)
+        self.lines = LineBuffer(ctx)
         self.reference = ReferenceTexture(ctx)
         self._selected = np.zeros(0, np.bool_)
         self._selected_ids = _NO_IDS
@@ -84,6 +89,8 @@ class Scene:
                 self.update_dots(dots, rows, chosen)
             if changed.places:
                 self.set_positions(dots.position_mm, dots.radius_mm)
+        if is_other or changed.has(records.LINE):
+            self.set_lines(document.drawing.lines)
         self._selected_ids = selected
         self._document, self._cursor = document, changed.cursor
 
@@ -92,12 +99,17 @@ class Scene:
         self._document = None
         self.set_page(width_mm, height_mm)
         self.set_dots(Dots.none(), np.zeros(0, np.bool_))
+        self.set_lines({})
 
     # --- its parts --------------------------------------------------------------------------
 
     def set_page(self, width_mm: float, height_mm: float) -> None:
         """Set the size of the paper; call it before `set_dots`."""
         self.page_mm = (float(width_mm), float(height_mm))
+
+    def set_lines(self, lines: Mapping[int, Any]) -> None:
+        """Hold lines by their ids; cheap for those that are there already."""
+        self.lines.set(lines, self.origin_mm)
 
     def set_reference(self, reference: Reference | None) -> None:
         """Hold another picture; cheap if it is the one already there."""
@@ -146,4 +158,5 @@ class Scene:
     def release(self) -> None:
         """Free every GL object."""
         self.dots.release()
+        self.lines.release()
         self.reference.release()

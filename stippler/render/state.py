@@ -8,7 +8,7 @@ import moderngl
 
 from stippler.camera import Size
 
-Blending = Literal["none", "over", "add"]
+Blending = Literal["none", "over", "add", "most"]
 
 
 def set_state(ctx: moderngl.Context, blending: Blending, *, sprites: bool = False) -> None:
@@ -16,8 +16,8 @@ def set_state(ctx: moderngl.Context, blending: Blending, *, sprites: bool = Fals
     gl: Any = ctx  # moderngl's stubs type these setters by their getters
     flags = moderngl.NOTHING if blending == "none" else moderngl.BLEND
     gl.enable_only(flags | (moderngl.PROGRAM_POINT_SIZE if sprites else 0))
-    gl.blend_equation = moderngl.FUNC_ADD
-    if blending == "add":
+    gl.blend_equation = moderngl.MAX if blending == "most" else moderngl.FUNC_ADD
+    if blending in ("add", "most"):
         gl.blend_func = moderngl.ONE, moderngl.ONE
     else:
         over = moderngl.ONE_MINUS_SRC_ALPHA  # an opaque target stays opaque

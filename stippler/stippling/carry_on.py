@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from stippler.stippling.default_number import with_number
 from stippler.stippling.page_raster import PageRaster
-from stippler.stippling.plan import Plan
 from stippler.stippling.postprocess import part_close
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.run_relaxation import relaxed
@@ -18,7 +19,7 @@ from stippler.stippling.stipple import Progress, raster_for
 
 def carry_on(
     reference: Reference,
-    plan: Plan,
+    style: Style,
     position_mm: NDArray[np.float64],
     radius_mm: NDArray[np.float32],
     n_done: int,
@@ -34,17 +35,18 @@ def carry_on(
         As `stages` does, with the dots in the order given; the stage is "relax", then "tone",
         and radii are those given until the last, which has the stage "done".
     """
-    raster = raster_for(reference, plan)
+    style = with_number(style, reference)
+    raster = raster_for(reference, style)
     radii = np.asarray(radius_mm, np.float64) / raster.pixel_mm
     points = np.clip(position_mm, 0.0, raster.size_mm) / raster.pixel_mm
-    for k, moved in enumerate(_relaxed(raster, plan, points, n_done), start=n_done + 1):
+    for k, moved in enumerate(_relaxed(raster, style, points, n_done), start=n_done + 1):
         points = moved
-        yield Progress("relax", k, plan.iterations, *raster.on_page(points, radii))
-    if plan.weighted and n_done < plan.iterations and plan.sizes == "tone":
+        yield Progress("relax", k, style.iterations, *raster.on_page(points, radii))
+    if style.weighted and n_done < style.iterations and style.sizes == "tone":
         points = part_close(points, raster)
     inked = raster.onto_ink(points)
     points = inked if len(inked) == len(points) else points
-    if plan.sizes == "tone":
+    if style.sizes == "tone":
         for share, solved in solve_radii(points, raster.darkness, raster.rule):
             yield Progress("tone", round(1000 * share), 1000, *raster.on_page(points, radii))
             if share == 1.0:
@@ -53,7 +55,7 @@ def carry_on(
 
 
 def _relaxed(
-    raster: PageRaster, plan: Plan, points: NDArray[np.float64], n_done: int
+    raster: PageRaster, style: Style, points: NDArray[np.float64], n_done: int
 ) -> Iterator[NDArray[np.float64]]:
     """Yield the dots after each step that is left, in pixels."""
     if not len(points):
@@ -63,5 +65,5 @@ def _relaxed(
     to_edge = np.minimum(np.minimum(at[:, 0], w - at[:, 0]), np.minimum(at[:, 1], h - at[:, 1]))
     beside = to_edge < raster.bleed * raster.pixel_mm
     page = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
-    for moved, _ in relaxed(raster, plan, points, page, beside, n_done):
+    for moved, _ in relaxed(raster, style, points, page, beside, n_done):
         yield moved

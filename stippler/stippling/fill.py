@@ -2,43 +2,43 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from stippler.drawing.page import MAX_PAGE_MM
-from stippler.errors import ParameterError
-from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
+from stippler.drawing.parameter import Choice, Kind, parameter, parameters_of
+from stippler.drawing.style import MAX_DOTS
+
+_LAYOUTS = (
+    Choice("hexagonal", "In rows", "Rows of dots at equal distances."),
+    Choice("random", "By chance", "Anywhere; relax them to even them out."),
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Filling:
-    """How an area is filled.
+    """How an area is filled; its fields are those of `PARAMETERS`."""
 
-    Attributes
-    ----------
-    n_dots : int
-        A hexagonal grid has about so many.
-    arrangement : {"hexagonal", "random"}
-    radius_mm : float
-    seed : int
-        Chooses where random dots lie.
-    """
-
-    n_dots: int = 2_000
-    arrangement: str = ARRANGEMENTS[0]
-    radius_mm: float = 0.3
-    seed: int = 1
+    n_dots: int = parameter(
+        Kind.WHOLE, 2_000, "Fill with", "How many dots; a grid has about so many.",
+        low=1, high=MAX_DOTS, keyword="dots",
+    )  # fmt: skip
+    arrangement: str = parameter(
+        Kind.CHOICE, "hexagonal", "Layout", "How the dots lie.", choices=_LAYOUTS,
+    )  # fmt: skip
+    radius_mm: float = parameter(
+        Kind.NUMBER, 0.3, "Dot radius", "Radius of the dots in mm.",
+        low=1e-6, high=MAX_PAGE_MM, unit="mm", keyword="radius",
+    )  # fmt: skip
+    seed: int = parameter(
+        Kind.WHOLE, 1, "Fill seed", "Chooses where dots by chance lie.",
+        low=0, high=2**63 - 1, only=("arrangement", ("random",)),
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
-        if not 1 <= self.n_dots <= MAX_DOTS:
-            raise ParameterError(
-                f"{self.n_dots} dots cannot be drawn", "fill", f"give 1 to {MAX_DOTS:,}"
-            )
-        if not (math.isfinite(self.radius_mm) and 0 < self.radius_mm <= MAX_PAGE_MM):
-            raise ParameterError(
-                f"{self.radius_mm:g} mm is no radius",
-                "fill",
-                f"give more than 0 and at most {MAX_PAGE_MM:,g}",
-            )
-        if not 0 <= self.seed < 2**63:
-            raise ParameterError(f"{self.seed} is no seed", "fill", "give 0 or more")
+        for about in PARAMETERS:
+            object.__setattr__(self, about.name, about.checked(getattr(self, about.name)))
+
+
+PARAMETERS = parameters_of(Filling)
+ARRANGEMENTS = next(one for one in PARAMETERS if one.name == "arrangement").values
+"""How an area is filled where there is no picture."""

@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.style import GROWTHS, STARTS
 from stippler.errors import ParameterError
 from stippler.kernels.halftone.grow_regions import fill_cells, grow
 from stippler.kernels.halftone.scan_order import (
@@ -22,7 +23,6 @@ from stippler.kernels.halftone.scan_order import (
     chamfer,
     order_by_distance,
 )
-from stippler.stippling.plan import GROWTHS, STARTS
 from stippler.stippling.tone import DotRule
 
 CELLS_PER_DOT = 14.0

@@ -10,12 +10,12 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.style import Style
 from stippler.errors import GeometryError
 from stippler.kernels.halftone.scan_order import outside_polygon
 from stippler.stippling.compartments import polygon_of
 from stippler.stippling.halftone import CELLS_PER_DOT, grown, reach_for, whole_dots
 from stippler.stippling.page_raster import at_resolution
-from stippler.stippling.plan import Plan
 from stippler.stippling.tone import DotRule, rule_for
 
 _MOST_CELLS = 60_000_000
@@ -31,9 +31,9 @@ class _Cells(NamedTuple):
 
 
 def pulses_inside(
-    darkness: NDArray[np.float32], plan: Plan, area: Polygon | MultiPolygon
+    darkness: NDArray[np.float32], style: Style, area: Polygon | MultiPolygon
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Place as many dots as a plan asks for in an area of a picture; return them and their radii.
+    """Place as many dots as a style asks for in an area of a picture; return them and their radii.
 
     Lengths are pixels of the picture. The cells are as fine as the area asks for, and the rule for
     size and density is that of the darkness within it, so the number is met exactly.
@@ -44,7 +44,7 @@ def pulses_inside(
         If so little of the area's box is the area's that the cells cannot be made so fine.
     """
     polygon_of(area, "area")
-    n_dots = int(plan.n_asked or 0)
+    n_dots = int(style.n_dots or 0)
     h, w = darkness.shape
     part = shapely.intersection(area, shapely.box(0.0, 0.0, w, h))
     if part.area <= 0.0:
@@ -59,14 +59,14 @@ def pulses_inside(
             "ask for fewer, or fill it at random",
         )  # fmt: skip
     rule = rule_for(inked[None, :], n_dots, None, inked[:0])
-    points = _grown(cells.darkness, rule, plan, float(inked.min()))
+    points = _grown(cells.darkness, rule, style, float(inked.min()))
     x, y = points.astype(np.intp).T
     radii = rule.radius(cells.darkness[y, x])
     return points * cells.side + cells.corner, radii * cells.side
 
 
 def _grown(
-    darkness: NDArray[np.float32], rule: DotRule, plan: Plan, lightest: float
+    darkness: NDArray[np.float32], rule: DotRule, style: Style, lightest: float
 ) -> NDArray[np.float64]:
     """Grow the dots of a rule; all lengths in cells."""
     levels = np.linspace(0.0, 1.0, 4097)
@@ -76,7 +76,7 @@ def _grown(
     charge *= np.float32(whole_dots(asked))
     spacing = math.sqrt(np.count_nonzero(charge) / max(asked, 1.0))
     reach = reach_for(float(rule.density(np.array([lightest]))[0]))
-    *_, (_, first) = grown(charge, asked, plan.growth, plan.start, plan.seed, reach, spacing)
+    *_, (_, first) = grown(charge, asked, style.growth, style.start, style.seed, reach, spacing)
     return first.position_px
 
 

@@ -10,11 +10,12 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.style import MAX_DOTS
 from stippler.drawing.validation import whole
 from stippler.errors import GeometryError, ParameterError
 from stippler.kernels.halftone.grow_regions import diffuse
 from stippler.stippling.compartments import polygon_of
-from stippler.stippling.plan import ARRANGEMENTS, MAX_DOTS
+from stippler.stippling.fill import ARRANGEMENTS
 
 _NO_DOTS = np.empty((0, 2))
 

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import MAX_DOTS
 from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
-from stippler.stippling.plan import MAX_DOTS
 from stippler.stippling.tone import DotRule, rule_for
 
 _BLEED = 3.0  # mean spacings

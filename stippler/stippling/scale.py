@@ -16,9 +16,9 @@ from shapely import affinity
 from stippler.drawing.deformation import Deformation
 from stippler.drawing.dots import FREE, Dots, first_seeds
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import MAX_DOTS
 from stippler.errors import ParameterError
 from stippler.stippling.density import DensityField
-from stippler.stippling.plan import MAX_DOTS
 
 if TYPE_CHECKING:
     from shapely.geometry import MultiPolygon, Polygon

@@ -1,10 +1,10 @@
-"""The pipeline: from a reference and a plan to dots whose ink meets the tone."""
+"""The pipeline: from a reference and a style to dots whose ink meets the tone."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,17 +12,18 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.drawing import Page
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import DEFAULT_DOTS, Style
 from stippler.kernels.tone.union_share import shares_of_union
+from stippler.stippling.default_number import with_number
 from stippler.stippling.halftone import DROPPED, sizes_by_region
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.halftone_area import pulses_inside
 from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.page_raster import PageRaster
-from stippler.stippling.plan import DEFAULT_DOTS, Plan
 from stippler.stippling.postprocess import at_edge, even_rim, part_close
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.run_relaxation import relaxed
-from stippler.stippling.tone import Shortfall, shortfall
+from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
 
 _TRIES = 6  # to meet the number of dots asked for
 _NOTED, _BANDS = 0.03, 10  # tone that may lack without a note, in so many bands of darkness
@@ -56,15 +57,15 @@ class Progress:
     shortfall: Shortfall | None = None
 
 
-def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Iterator[Progress]:
+def stages(reference: Reference, style: Style, *, snapshots: bool = True) -> Iterator[Progress]:
     """Stipple a reference; yield a snapshot after every piece of work.
 
-    Close the iterator to cancel. The result depends on the reference, the plan and nothing else.
+    Close the iterator to cancel. The result depends on the reference, the style and nothing else.
 
     Parameters
     ----------
     reference : Reference
-    plan : Plan
+    style : Style
     snapshots : bool
         Whether to fill the arrays of all snapshots, or only those of the last.
 
@@ -74,9 +75,10 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         The last one has the stage "done".
     """
     Page(reference.width_mm, reference.height_mm)  # too high a page is refused before the work
-    raster = raster_for(reference, plan)
-    if plan.sizes == "regions":
-        yield from _stages_by_region(raster, plan, snapshots)
+    style = with_number(style, reference)
+    raster = raster_for(reference, style)
+    if style.sizes == "regions":
+        yield from _stages_by_region(raster, style, snapshots)
         return
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
 
@@ -85,22 +87,22 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
     ) -> Progress:
         shown = nothing
         if snapshots:
-            px = raster.trim(px, plan.n_asked)
+            px = raster.trim(px, style.n_dots)
             shown = raster.on_page(px, raster.radii(px))
         return Progress(stage, done, total, *shown, movement_mm)
 
     points = np.empty((0, 2))
     yield snapshot("first dots", 0, 1000, points)  # nothing yet, but a chance to cancel
-    for share, points in _first_dots(raster, plan):
+    for share, points in _first_dots(raster, style):
         yield snapshot("first dots", round(1000 * share), 1000, points)
-    if len(points) and plan.iterations:
+    if len(points) and style.iterations:
         for k, (moved, movement_mm) in enumerate(
-            relaxed(raster, plan, points, raster.outline_mm(), watched=snapshots)
+            relaxed(raster, style, points, raster.outline_mm(), watched=snapshots)
         ):
             points = moved if len(moved) else points
-            yield snapshot("relax", k + 1, plan.iterations, points, movement_mm)
-    points = raster.trim(points, plan.n_asked)
-    if plan.weighted and plan.iterations:
+            yield snapshot("relax", k + 1, style.iterations, points, movement_mm)
+    points = raster.trim(points, style.n_dots)
+    if style.weighted and style.iterations:
         for share, finished in _finish(raster, points):
             points = finished
             yield snapshot("tone", round(200 * share), 1000, points)
@@ -110,11 +112,12 @@ def stages(reference: Reference, plan: Plan, *, snapshots: bool = True) -> Itera
         radii = solved
         if share < 1.0:
             yield snapshot("tone", round(200 + 800 * share), 1000, points)
-    lack = shortfall(raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked)
+    lack = shortfall(raster.darkness, raster.rule, raster.pixel_mm, len(points), style.n_dots)
+    lack = replace(lack, notes=lack.notes + too_small_to_print(radii * raster.pixel_mm))
     yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=lack)
 
 
-def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterator[Progress]:
+def _stages_by_region(raster: PageRaster, style: Style, snapshots: bool) -> Iterator[Progress]:
     """Draw as the paper does: sizes follow from the regions, and stay with their dots."""
 
     def snapshot(
@@ -126,21 +129,21 @@ def _stages_by_region(raster: PageRaster, plan: Plan, snapshots: bool) -> Iterat
 
     points, radii = np.empty((0, 2)), np.empty(0)
     yield snapshot("first dots", 0, 1000, points, radii)
-    for share, first in pulses(raster.density(), plan.growth, start=plan.start, seed=plan.seed):
+    for share, first in pulses(raster.density(), style.growth, start=style.start, seed=style.seed):
         radii, keep = sizes_by_region(first.region_px, raster.rule)
         points, radii = first.position_px[keep], radii[keep]
         yield snapshot("first dots", round(1000 * share), 1000, points, radii)
-    if len(points) and plan.iterations:
+    if len(points) and style.iterations:
         for k, (moved, movement_mm) in enumerate(
-            relaxed(raster, plan, points, raster.outline_mm(), watched=snapshots)
+            relaxed(raster, style, points, raster.outline_mm(), watched=snapshots)
         ):
             points = moved if len(moved) else points
-            yield snapshot("relax", k + 1, plan.iterations, points, radii, movement_mm)
+            yield snapshot("relax", k + 1, style.iterations, points, radii, movement_mm)
     points = raster.onto_ink(raster.trim(points, None))
     notes = shortfall(
-        raster.darkness, raster.rule, raster.pixel_mm, len(points), plan.n_asked
+        raster.darkness, raster.rule, raster.pixel_mm, len(points), style.n_dots
     ).notes
-    notes += _off_the_tone(raster, points, radii)
+    notes += _off_the_tone(raster, points, radii) + too_small_to_print(radii * raster.pixel_mm)
     yield Progress("done", 1, 1, *raster.on_page(points, radii), shortfall=Shortfall(notes=notes))
 
 
@@ -216,42 +219,42 @@ def pulse_density(
     radii : (n,) float64, pixels
         By the rule for radius and density; not solved for the tone.
     """
-    plan = Plan(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
+    style = Style(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
     reference = Reference(darkness, float(darkness.shape[1]))
     if area is not None:
-        return pulses_inside(reference.darkness, plan, area)
-    raster = raster_for(reference, plan)
-    *_, (_, points) = _first_dots(raster, plan)
+        return pulses_inside(reference.darkness, style, area)
+    raster = raster_for(reference, style)
+    *_, (_, points) = _first_dots(raster, style)
     points = raster.onto_ink(raster.trim(points, None))
     return points * raster.pixel_mm, raster.radii(points) * raster.pixel_mm
 
 
-def raster_for(reference: Reference, plan: Plan) -> PageRaster:
-    """Prepare the raster that a plan lays its dots out on."""
-    by_region = plan.sizes == "regions"
+def raster_for(reference: Reference, style: Style) -> PageRaster:
+    """Prepare the raster that a style lays its dots out on."""
+    by_region = style.sizes == "regions"
     return PageRaster.of(
         reference,
-        plan.n_asked,
-        plan.size_range_mm,
-        bleeds=plan.weighted and not by_region,
+        style.n_dots,
+        style.size_range_mm,
+        bleeds=style.weighted and not by_region,
         faintest=DROPPED if by_region else None,
     )
 
 
-def _first_dots(raster: PageRaster, plan: Plan) -> Iterator[tuple[float, NDArray[np.float64]]]:
+def _first_dots(raster: PageRaster, style: Style) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Yield the share done and the dots so far, in pixels from the page's corner."""
     density = raster.density()
     yield 0.0, np.empty((0, 2))
-    if plan.first_dots == "pulse-density":
-        halftone = pulses(density, plan.growth, start=plan.start, seed=plan.seed)
+    if style.first_dots == "pulse-density":
+        halftone = pulses(density, style.growth, start=style.start, seed=style.seed)
         for share, first in halftone:
             yield share, first.position_px - raster.bleed
         return
-    if plan.first_dots == "random":
-        yield 1.0, random_dots(density, plan.seed) - raster.bleed
+    if style.first_dots == "random":
+        yield 1.0, random_dots(density, style.seed) - raster.bleed
         return
-    place = floyd_steinberg if plan.first_dots == "floyd-steinberg" else hexagonal
-    yield 1.0, _trimmed_to(raster, plan.n_asked, density, place)
+    place = floyd_steinberg if style.first_dots == "floyd-steinberg" else hexagonal
+    yield 1.0, _trimmed_to(raster, style.n_dots, density, place)
 
 
 def _trimmed_to(

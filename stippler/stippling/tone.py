@@ -20,6 +20,10 @@ _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
 """Summed area of the discs on a unit of page, overlaps counted twice, that covers so much of it;
 for relaxed dots of locally equal size."""
 
+LEAST_PRINTED_MM = 0.1
+"""Diameter below which many presses and pens print no dot; publishers ask for such lines."""
+
+_PRINTS, _FEW = 0.97, 0.01  # of that diameter; of all dots
 _BINS = 1024
 _VARIES = 1.3
 
@@ -203,3 +207,14 @@ def shortfall(
     y = np.flatnonzero(where.any(axis=1))
     box = (x[0] * pixel_mm, y[0] * pixel_mm, (x[-1] + 1) * pixel_mm, (y[-1] + 1) * pixel_mm)
     return Shortfall(float(where.mean()), float(missing[where].mean()), box, notes)
+
+
+def too_small_to_print(radius_mm: NDArray[np.floating]) -> tuple[str, ...]:
+    """Say how many dots are smaller than presses and pens print; nothing if hardly any are."""
+    small = float(np.mean(2.0 * radius_mm < _PRINTS * LEAST_PRINTED_MM)) if len(radius_mm) else 0.0
+    if small < _FEW:
+        return ()
+    return (
+        f"{100 * small:.0f} % of the dots are less than {LEAST_PRINTED_MM:g} mm across, which many "
+        "presses and pens do not print; ask for fewer dots or a larger page",
+    )

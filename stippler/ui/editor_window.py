@@ -30,6 +30,7 @@ from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
 from stippler.ui.actions import Parts, commands_for
+from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
@@ -95,6 +96,7 @@ class Editor:
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
+        self._area_overlay = AreaOverlay()
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
@@ -312,6 +314,10 @@ class Editor:
         return self.painting.toolbox.overlay(document, self.pointer.at_mm, camera.px_per_mm)
 
     def _draw_overlay(self, area: Rect) -> None:
+        tool, document = self.painting.toolbox.tool, self.session.document
+        if document is not None and tool is not None and tool.shows_areas:
+            choice = self.painting.toolbox.areas
+            self._area_overlay.draw(document, choice, self.view, area, self._ratio)
         draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
@@ -348,7 +354,7 @@ class Editor:
         return f"{toolbox.tool.label}, {size} px wide on the screen: {toolbox.tool.tip}"
 
     def _previewed(self) -> Preview | None:
-        """Return the change that is held in a panel, or that the brush or the plan will make."""
+        """Return the change that is held in a panel, or that the brush or the style will make."""
         hovers = self.hands.is_free
         return self.shaping.preview or (
             self.painting.preview(self.pointer.at_mm) if hovers else None

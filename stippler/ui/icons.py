@@ -160,6 +160,15 @@ def _select(p: Pen) -> None:
             p.line((x, y0), (x, y0 + 0.16))
 
 
+def _nodes(p: Pen) -> None:
+    p.line((0.12, 0.78), (0.3, 0.42), (0.56, 0.3), (0.88, 0.22))
+    for x, y in ((0.12, 0.78), (0.44, 0.34), (0.88, 0.22)):
+        low, high = p.at(x - 0.1, y - 0.1), p.at(x + 0.1, y + 0.1)
+        p.draw.add_rect_filled(low, high, p.colour)
+    p.line((0.44, 0.34), (0.62, 0.86))
+    p.ring(0.62, 0.86, 0.09)
+
+
 _ICONS: dict[str, Callable[[Pen], None]] = {
     "": _none,
     "add": _add,
@@ -177,6 +186,7 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "push": _push,
     "comb": _comb,
     "select": _select,
+    "nodes": _nodes,
 }
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.drawing import MAX_PAGE_MM
+from stippler.drawing.picture_values import TONES
+from stippler.drawing.style import PARAMETERS, Style
 from stippler.settings import put_aside, read_document, write_document, write_text
-from stippler.stippling.plan import Plan
 from stippler.ui.look import Look
 from stippler.ui.theme import DARK, LIGHT
 from stippler.ui.window.placement import Place
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 FILE, LAYOUT_FILE = "preferences.json", "layout.ini"
 SCALES = (0.75, 3.0)
 N_RECENT = 10
-TONES = ("illustration", "linear", "perceptual")
 _VERSION = 1
 _THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 _PLAIN = (bool, int, float, str)
@@ -37,7 +37,7 @@ class Preferences:
     folder : Path or None
         Where it is kept; None keeps nothing.
     values : dict
-        Tone, width of the page, and the plan's fields, as last used.
+        Tone, width of the page, and the style's fields, as last used.
     closed : list of str
         Names of the panels that are not shown.
     recent : list of Path
@@ -99,19 +99,20 @@ class Preferences:
     # --- values of a drawing to come ----------------------------------------------------------
 
     def begin(
-        self, plan: Plan, tone: str, width_mm: float, given: Collection[str]
-    ) -> tuple[Plan, str, float]:
+        self, style: Style, tone: str, width_mm: float, given: Collection[str]
+    ) -> tuple[Style, str, float]:
         """Return what to begin with: what was `given`, by name, and else what was used last."""
         sized = {"n_dots", "size_range_mm"}
         skipped = {*given, *(sized if sized & set(given) else ())}
         kept = {name: value for name, value in self.values.items() if name not in skipped}
         tone, width_mm = kept.pop("tone", tone), kept.pop("width_mm", width_mm)
-        return replace(plan, **kept), tone, width_mm
+        return replace(style, **kept), tone, width_mm
 
     def note_values(self, session: Session) -> None:
         """Take note of the values in use."""
-        plan = {k: v for k, v in asdict(session.plan).items() if k not in _NOT_KEPT}
-        self.values = {"tone": session.tone, "width_mm": session.width_mm, **plan}
+        names = [about.name for about in PARAMETERS if about.name not in _NOT_KEPT]
+        style = {name: getattr(session.style, name) for name in names}
+        self.values = {"tone": session.tone, "width_mm": session.width_mm, **style}
 
     # --- lists --------------------------------------------------------------------------------
 
@@ -172,17 +173,10 @@ class Preferences:
         self.look.opacity = min(max(self.look.opacity, 0.0), 1.0)
 
     def _take_values(self, data: dict[str, Any]) -> None:
-        known = {f.name for f in fields(Plan)} - set(_NOT_KEPT)
+        known = {about.name for about in PARAMETERS} - set(_NOT_KEPT)
         values = {name: value for name, value in data.items() if name in known}
-        if (span := values.get("size_range_mm")) is not None:
-            low, high = span
-            values["size_range_mm"] = (_like(0.0, low), _like(0.0, high))
-        first = Plan()
-        for name in ("iterations", "weighted"):
-            values[name] = _like(getattr(first, name), values.get(name, getattr(first, name)))
-        if values.get("n_dots") is not None:
-            values["n_dots"] = _like(0, values["n_dots"])
-        replace(first, **values)  # raises what a bad value deserves
+        style = Style.from_json(values)  # raises what a bad value deserves
+        values = {name: getattr(style, name) for name in values}
         tone, width_mm = data.get("tone", TONES[0]), _like(0.0, data["width_mm"])
         if tone not in TONES or not 0 < width_mm <= MAX_PAGE_MM:
             raise ValueError(f"{tone}, {width_mm:g} mm")

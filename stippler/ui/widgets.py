@@ -425,6 +425,14 @@ class Widgets:
         imgui.pop_style_var()
         self.caption(text or " ")
 
+    def more(self, name: str) -> bool:
+        """Draw a line that opens what is seldom needed; return whether it is open."""
+        flags = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
+        is_open = imgui.tree_node_ex(f"More##{name}", flags)
+        self.note(f"More {name}")
+        self.tip("What is seldom needed.")
+        return is_open
+
     def rule(self) -> None:
         """Draw a line between sections."""
         imgui.dummy((0.0, 4.0 * self.scale))

@@ -5,8 +5,8 @@ import pytest
 
 from stippler.analysis.grain import measure_grain
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.errors import ParameterError
-from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import stages
 
 
@@ -48,7 +48,7 @@ def test_a_stippled_grey_has_no_rows(darkness):
     reference = Reference(np.full((600, 600), darkness, np.float32), 60.0)
     found = {}
     for spacing in ("even", "lloyd"):
-        *_, last = stages(reference, Plan(n_dots=5000, spacing=spacing), snapshots=False)
+        *_, last = stages(reference, Style(n_dots=5000, spacing=spacing), snapshots=False)
         found[spacing] = measure_grain(np.array(last.position_mm))
     even = found["even"]
     assert even.rows_at_4 < 0.015 < 0.04 < found["lloyd"].rows_at_4

@@ -16,7 +16,7 @@ from pathlib import Path
 from numba.core.dispatcher import Dispatcher
 from stippler.app import App
 from stippler.brushes.kinds import KINDS
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.window.scripted_host import Host
 
 loaded, at_work = [], []
@@ -28,8 +28,8 @@ def compile_and_tell(self, signature):
     return compile_one(self, signature)
 
 Dispatcher.compile = compile_and_tell
-plan = Plan(n_dots=500, iterations=2)
-app = App(plan, tone="linear", width_mm=60, size=(1000, 700), offscreen=True)
+style = Style(n_dots=500, iterations=2)
+app = App(style, tone="linear", width_mm=60, size=(1000, 700), offscreen=True)
 host = Host(app.window, app.editor, app.step)
 session, painting = app.session, app.editor.painting
 

@@ -153,7 +153,7 @@ def test_compensated_dots_print_as_large_as_drawn():
         root = math.sqrt(dots.elongation[k])
         a, b = made.radius_mm[k] * root + gain, made.radius_mm[k] / root + gain
         assert a * b == pytest.approx(float(dots.radius_mm[k]) ** 2, rel=1e-5)
-    assert made.radius_mm[2] == pytest.approx(0.02 / 3)
+    assert len(made) == 2  # the third is lost by the process, and its ink is next to nothing
 
 
 def test_values_no_sheet_measures():

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from stippler.drawing.drawing import Page
+from stippler.drawing.style import Style
 from stippler.editor.session import Session
 from stippler.jobs.work import PREPARE, Work
 from stippler.jobs.worker import Update
-from stippler.stippling.plan import Plan
 from stippler.ui.popups.file_dialogs import Dialogs
 from stippler.ui.popups.filing import Filing
 from stippler.ui.preferences import Preferences
@@ -35,7 +35,7 @@ class Worker:
 def test_nothing_is_written(ask):
     exporter = Worker()
     session = Session(
-        Worker(), exporter, Plan(), tone="linear", width_mm=100.0, stipple=lambda *asked: iter(())
+        Worker(), exporter, Style(), tone="linear", width_mm=100.0, stipple=lambda *asked: iter(())
     )
     session.new(Page(50.0, 50.0))
     session.poll()

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from stippler.app import App
+from stippler.drawing.style import Style
 from stippler.editor.messages import ERROR
-from stippler.stippling.plan import Plan
 from stippler.ui.panels.layout import SHAPE
 from stippler.ui.window.placement import SMALLEST, Place
 from stippler.ui.window.scripted_host import Host
@@ -24,7 +24,7 @@ def test_a_small_window_is_larger_the_next_time() -> None:
 def test_every_panel_draws(size, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path))
     monkeypatch.setenv("STIPPLER_SCALE", "3")
-    app = App(Plan(), tone="linear", width_mm=100.0, size=size, offscreen=True)
+    app = App(Style(), tone="linear", width_mm=100.0, size=size, offscreen=True)
     try:
         host = Host(app.window, app.editor, app.step)
         for name in (SHAPE, *app.editor.panels.names):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.panels import status
 from stippler.ui.window.scripted_host import Host
 
@@ -23,7 +23,7 @@ def test_a_long_message_is_read_alone(tmp_path: Path, monkeypatch: pytest.Monkey
     drawn: list[int] = []
     draw = status._draw_fields
     monkeypatch.setattr(status, "_draw_fields", lambda w, f: (drawn.append(len(f)), draw(w, f)))
-    app = App(Plan(), tone="linear", width_mm=100.0, size=(480, 400), offscreen=True)
+    app = App(Style(), tone="linear", width_mm=100.0, size=(480, 400), offscreen=True)
     try:
         host = Host(app.window, app.editor, app.step)
         app.session.messages.say(

@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 
 from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.stippling.stipple import stages
 
 ROOT = Path(__file__).parents[2]
@@ -25,9 +25,9 @@ def measure(result, darkness):
     )
 
 
-def drawn(darkness, **plan):
+def drawn(darkness, **style):
     reference = Reference(darkness.astype(np.float32), float(darkness.shape[1]))
-    *_, last = stages(reference, Plan(**plan), snapshots=False)
+    *_, last = stages(reference, Style(**style), snapshots=False)
     return last
 
 

@@ -13,11 +13,11 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.editor.session import Session
 from stippler.errors import PictureError
 from stippler.jobs.work import Work
 from stippler.jobs.worker import Update
-from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress
 
 POINTS = np.array([[10.0, 10.0], [20.0, 20.0], [30.0, 30.0]])
@@ -52,7 +52,7 @@ def session(worker):
     made = Session(
         worker,
         Worker(),
-        Plan(n_dots=3),
+        Style(n_dots=3),
         tone="linear",
         width_mm=40.0,
         stipple=lambda *asked: made.asked.append(asked) or iter(()),

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.stippling.carry_on import carry_on
-from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import stages
 
-PLAN = Plan(n_dots=1500, iterations=12)
+STYLE = Style(n_dots=1500, iterations=12)
 
 
 @pytest.fixture(scope="module")
@@ -21,13 +21,13 @@ def reference() -> Reference:
 
 @pytest.fixture(scope="module")
 def half_done(reference):
-    return next(p for p in stages(reference, PLAN) if p.stage == "relax" and p.done == 4)
+    return next(p for p in stages(reference, STYLE) if p.stage == "relax" and p.done == 4)
 
 
 def test_as_many_steps_are_left_as_were_asked_for_and_every_dot_keeps_its_place_in_line(
     reference, half_done
 ):
-    results = list(carry_on(reference, PLAN, half_done.position_mm, half_done.radius_mm, 4))
+    results = list(carry_on(reference, STYLE, half_done.position_mm, half_done.radius_mm, 4))
     assert [p.done for p in results if p.stage == "relax"] == list(range(5, 13))
     assert results[-1].stage == "done"
     last = results[-1].position_mm
@@ -39,8 +39,8 @@ def test_as_many_steps_are_left_as_were_asked_for_and_every_dot_keeps_its_place_
 
 
 def test_the_tone_is_that_of_a_stippling_that_nobody_painted_on(reference, half_done):
-    *_, alone = stages(reference, PLAN)
-    *_, carried = carry_on(reference, PLAN, half_done.position_mm, half_done.radius_mm, 4)
+    *_, alone = stages(reference, STYLE)
+    *_, carried = carry_on(reference, STYLE, half_done.position_mm, half_done.radius_mm, 4)
 
     def ink(p, low, high):
         inside = (p.position_mm[:, 0] >= low) & (p.position_mm[:, 0] < high)
@@ -52,21 +52,21 @@ def test_the_tone_is_that_of_a_stippling_that_nobody_painted_on(reference, half_
 
 def test_with_no_step_left_only_radii_are_solved(reference, half_done):
     *_, last = carry_on(
-        reference, PLAN, half_done.position_mm, half_done.radius_mm, PLAN.iterations
+        reference, STYLE, half_done.position_mm, half_done.radius_mm, STYLE.iterations
     )
     assert np.allclose(last.position_mm, half_done.position_mm, atol=1e-6)
     assert not np.array_equal(last.radius_mm, half_done.radius_mm)
 
 
 def test_without_dots_there_is_nothing_to_do(reference):
-    *_, last = carry_on(reference, PLAN, np.empty((0, 2)), np.empty(0, np.float32), 0)
+    *_, last = carry_on(reference, STYLE, np.empty((0, 2)), np.empty(0, np.float32), 0)
     assert last.stage == "done"
     assert len(last.position_mm) == 0
 
 
 def test_sizes_by_region_stay_with_their_dots(reference):
-    plan = replace(PLAN, sizes="regions")
-    made = next(p for p in stages(reference, plan) if p.stage == "relax" and p.done == 4)
-    *_, last = carry_on(reference, plan, made.position_mm, made.radius_mm, 4)
+    style = replace(STYLE, sizes="regions")
+    made = next(p for p in stages(reference, style) if p.stage == "relax" and p.done == 4)
+    *_, last = carry_on(reference, style, made.position_mm, made.radius_mm, 4)
     assert last.radius_mm == pytest.approx(made.radius_mm)
     assert not np.array_equal(last.position_mm, made.position_mm)

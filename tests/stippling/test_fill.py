@@ -44,5 +44,5 @@ def test_an_area_is_filled_in_one_step(arrangement) -> None:
     "wrong", [{"n_dots": 0}, {"n_dots": 10**9}, {"radius_mm": 0.0}, {"seed": -1}]
 )
 def test_fillings_that_make_no_sense(wrong) -> None:
-    with pytest.raises(ParameterError, match=r"^fill: "):
+    with pytest.raises(ParameterError, match=r"^(dots|arrangement|radius|seed): "):
         Filling(**wrong)

@@ -7,8 +7,8 @@ from scipy.spatial import KDTree
 
 from stippler.analysis.tone_error import draw_ink
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.stippling.page_raster import PageRaster
-from stippler.stippling.plan import Plan
 from stippler.stippling.postprocess import even_rim, part_close
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.stipple import stages
@@ -21,7 +21,7 @@ def sheet_of(darkness, n):
 def relaxed(darkness, n):
     """Return dots in pixels of the raster, relaxed on the bleed and trimmed, but not finished."""
     raster = sheet_of(darkness, n)
-    *_, step = (p for p in stages(Reference(darkness, float(darkness.shape[1])), Plan(n_dots=n))
+    *_, step = (p for p in stages(Reference(darkness, float(darkness.shape[1])), Style(n_dots=n))
                 if p.stage == "relax")  # fmt: skip
     return raster, step.position_mm / raster.pixel_mm
 

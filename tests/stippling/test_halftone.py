@@ -10,6 +10,7 @@ from shapely.geometry import MultiPolygon, Point, Polygon, box
 
 from stippler.analysis.spacing import measure_spacing
 from stippler.analysis.spectrum import measure_spectrum
+from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.halftone import (
     DROPPED,
@@ -30,7 +31,6 @@ from stippler.stippling.initial_points import (
     random_dots,
     random_in,
 )
-from stippler.stippling.plan import Plan
 from stippler.stippling.tone import DotRule
 
 
@@ -92,8 +92,8 @@ def test_dots_come_progressively_and_grow_only():
 
 
 def dots_in(area, n, side, start="top"):
-    plan = Plan(n_dots=n, start=start)
-    return pulses_inside(np.full((side, side), 0.4, np.float32), plan, area)[0]
+    style = Style(n_dots=n, start=start)
+    return pulses_inside(np.full((side, side), 0.4, np.float32), style, area)[0]
 
 
 @pytest.mark.parametrize("start", STARTS)

@@ -6,7 +6,7 @@ from scipy.spatial import KDTree
 
 from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.stippling.relax_all import relaxed_all
 from stippler.stippling.stipple import stages
 
@@ -20,7 +20,7 @@ def made():
     darkness = 0.1 + 0.7 * x * (0.6 + 0.4 * np.sin(7 * y))
     darkness[60:120, 60:150] = 0.8
     reference = Reference(np.clip(darkness, 0, 1).astype(np.float32), W)
-    *_, last = stages(reference, Plan(n_dots=4000), snapshots=False)
+    *_, last = stages(reference, Style(n_dots=4000), snapshots=False)
     return reference, np.array(last.position_mm), np.array(last.radius_mm)
 
 

@@ -10,15 +10,15 @@ from shapely.geometry import Polygon
 
 from stippler.analysis.tone_error import draw_ink, measure_tone
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import FIRST_DOTS, Style
 from stippler.errors import GeometryError, ParameterError
 from stippler.kernels.machine.pool import n_threads, set_threads
-from stippler.stippling.plan import FIRST_DOTS, Plan
 from stippler.stippling.stipple import notes_on, pulse_density, stages
 
 
-def finished(darkness, plan, width_mm=None, **options):
+def finished(darkness, style, width_mm=None, **options):
     field = np.asarray(darkness, np.float32)
-    *_, last = stages(Reference(field, width_mm or float(field.shape[1])), plan, **options)
+    *_, last = stages(Reference(field, width_mm or float(field.shape[1])), style, **options)
     assert last.stage == "done"
     return last
 
@@ -48,13 +48,13 @@ def ramp(h=120, w=160):
 )  # fmt: skip
 def test_plans_that_make_no_sense_are_refused_by_name(option, value, name):
     with pytest.raises(ParameterError) as caught:
-        Plan(**{option: value})
+        Style(**{option: value})
     assert str(caught.value).startswith(name)
 
 
 def test_stages_come_in_order_and_snapshots_are_frozen():
     seen = []
-    for progress in stages(Reference(ramp(), 80.0), Plan(n_dots=900, iterations=4)):
+    for progress in stages(Reference(ramp(), 80.0), Style(n_dots=900, iterations=4)):
         seen.append(progress.stage)
         assert 0 <= progress.done <= progress.total
         assert len(progress.position_mm) == len(progress.radius_mm)
@@ -70,17 +70,17 @@ def test_stages_come_in_order_and_snapshots_are_frozen():
 
 def test_dots_come_while_pulses_are_still_counted():
     field = np.full((700, 700), 0.5, np.float32)
-    shown = [len(p.position_mm) for p in stages(Reference(field, 70.0), Plan(n_dots=30_000))
+    shown = [len(p.position_mm) for p in stages(Reference(field, 70.0), Style(n_dots=30_000))
              if p.stage == "first dots" and p.done < p.total]  # fmt: skip
     assert sorted(shown) == shown
     assert any(0 < n < 25_000 for n in shown)
 
 
 def test_without_snapshots_only_the_last_has_dots():
-    plan = Plan(n_dots=900, iterations=2)
-    quiet = list(stages(Reference(ramp(), 80.0), plan, snapshots=False))
+    style = Style(n_dots=900, iterations=2)
+    quiet = list(stages(Reference(ramp(), 80.0), style, snapshots=False))
     assert all(len(p.position_mm) == 0 for p in quiet[:-1])
-    *_, loud = stages(Reference(ramp(), 80.0), plan)
+    *_, loud = stages(Reference(ramp(), 80.0), style)
     assert np.array_equal(quiet[-1].position_mm, loud.position_mm)
     assert np.array_equal(quiet[-1].radius_mm, loud.radius_mm)
 
@@ -90,8 +90,8 @@ def test_without_snapshots_only_the_last_has_dots():
 def test_the_seed_and_nothing_else_decides(method, spacing):
     def run(threads, seed):
         set_threads(threads)
-        plan = Plan(n_dots=3000, iterations=3, seed=seed, first_dots=method, spacing=spacing)
-        result = finished(ramp(), plan)
+        style = Style(n_dots=3000, iterations=3, seed=seed, first_dots=method, spacing=spacing)
+        result = finished(ramp(), style)
         return result.position_mm.tobytes() + result.radius_mm.tobytes()
 
     before = n_threads()
@@ -103,7 +103,7 @@ def test_the_seed_and_nothing_else_decides(method, spacing):
 
 
 def test_a_closed_iterator_stops():
-    work = stages(Reference(ramp(), 80.0), Plan(n_dots=2000, iterations=50))
+    work = stages(Reference(ramp(), 80.0), Style(n_dots=2000, iterations=50))
     for progress in work:
         if progress.stage == "relax":
             break
@@ -116,14 +116,14 @@ def test_a_closed_iterator_stops():
 def test_the_number_is_met_within_one_percent(seed, n):
     rng = np.random.default_rng(seed)
     picture = np.kron(rng.random((4, 5)), np.ones((30, 30)))
-    result = finished(picture, Plan(n_dots=n, iterations=3))
+    result = finished(picture, Style(n_dots=n, iterations=3))
     assert abs(len(result.position_mm) - n) <= max(0.01 * n, 1)
     assert result.radius_mm.max() <= 2.0 * result.radius_mm.min() * (1 + 1e-5)
 
 
 def test_sizes_alone_set_the_number():
-    small = finished(ramp(), Plan(size_range_mm=(0.6, 1.2), iterations=3))
-    large = finished(ramp(), Plan(size_range_mm=(1.2, 2.4), iterations=3))
+    small = finished(ramp(), Style(size_range_mm=(0.6, 1.2), iterations=3))
+    large = finished(ramp(), Style(size_range_mm=(1.2, 2.4), iterations=3))
     assert len(small.position_mm) == pytest.approx(4 * len(large.position_mm), rel=0.1)
     for result, low in ((small, 0.6), (large, 1.2)):
         assert result.radius_mm.min() >= np.float32(low)
@@ -131,11 +131,11 @@ def test_sizes_alone_set_the_number():
 
 
 def test_sizes_and_number_together_report_what_is_missing():
-    few = finished(ramp(), Plan(n_dots=300, size_range_mm=(0.5, 1.0), iterations=3))
+    few = finished(ramp(), Style(n_dots=300, size_range_mm=(0.5, 1.0), iterations=3))
     assert abs(len(few.position_mm) - 300) <= 3
     assert few.shortfall.share > 0.3
     assert few.shortfall.box_mm[0] < few.shortfall.box_mm[2] <= 160.0
-    many = finished(ramp(), Plan(n_dots=20_000, size_range_mm=(0.8, 1.6), iterations=3))
+    many = finished(ramp(), Style(n_dots=20_000, size_range_mm=(0.8, 1.6), iterations=3))
     assert len(many.position_mm) < 10_000
     assert "fit" in many.shortfall.notes[0]
     assert measure_tone(
@@ -153,7 +153,7 @@ def test_no_dot_stands_on_white(seed, weighted):
         picture[y : y + rng.integers(1, 40), x : x + rng.integers(1, 40)] = rng.random()
     if not picture.any():
         return
-    result = finished(picture, Plan(n_dots=800, iterations=6, weighted=weighted))
+    result = finished(picture, Style(n_dots=800, iterations=6, weighted=weighted))
     assert (pixels_under(result, picture) > 0).all()
 
 
@@ -162,7 +162,7 @@ def test_an_edge_is_placed_within_half_a_dot_spacing(angle):
     y, x = np.mgrid[0:200, 0:200] + 0.5
     dark = (x - 100) * math.cos(angle) + (y - 100) * math.sin(angle) > 0
     picture = np.where(dark, 0.6, 0.0)
-    result = finished(picture, Plan(n_dots=2000))
+    result = finished(picture, Style(n_dots=2000))
     spacing = math.sqrt(dark.sum() / 2000)
     depth = (result.position_mm[:, 0] - 100) * math.cos(angle) + (
         result.position_mm[:, 1] - 100
@@ -193,7 +193,7 @@ def test_the_paper_s_relaxation_evens_out_and_the_default_keeps_tone():
     picture = ramp(150, 150)
 
     def density_in_dark(weighted):
-        result = finished(picture, Plan(n_dots=1500, iterations=20, weighted=weighted))
+        result = finished(picture, Style(n_dots=1500, iterations=20, weighted=weighted))
         return np.count_nonzero(result.position_mm[:, 0] > 75) / len(result.position_mm)
 
     assert density_in_dark(True) > density_in_dark(False) > 0.5
@@ -205,7 +205,7 @@ def test_tone_is_met(single):
     y, x = np.mgrid[0:200, 0:200] / 199.0
     picture[20:220, 20:220] = 0.5 + 0.45 * np.sin(3 * x) * np.cos(4 * y)
     size = (1.0, 1.0) if single else None
-    result = finished(picture, Plan(n_dots=None if single else 6000, size_range_mm=size))
+    result = finished(picture, Style(n_dots=None if single else 6000, size_range_mm=size))
     error = measure_tone(result.position_mm, result.radius_mm.astype(float), picture)
     assert error.tone_rmse < (0.02 if single else 0.005)
     assert abs(error.bias) < (0.01 if single else 0.002)
@@ -231,7 +231,7 @@ PICTURES = {
 @pytest.mark.parametrize("method", FIRST_DOTS)
 def test_strange_pictures_give_a_valid_drawing(name, method):
     picture = PICTURES[name].astype(np.float32)
-    result = finished(picture, Plan(n_dots=700, iterations=3, first_dots=method), 100.0)
+    result = finished(picture, Style(n_dots=700, iterations=3, first_dots=method), 100.0)
     height = 100.0 * picture.shape[0] / picture.shape[1]
     assert np.isfinite(result.position_mm).all()
     assert ((result.position_mm >= 0) & (result.position_mm <= (100.0, height))).all()
@@ -244,7 +244,7 @@ def test_strange_pictures_give_a_valid_drawing(name, method):
 
 
 def test_one_dot_is_a_drawing():
-    result = finished(np.full((30, 30), 0.2), Plan(n_dots=1, iterations=2))
+    result = finished(np.full((30, 30), 0.2), Style(n_dots=1, iterations=2))
     assert len(result.position_mm) == 1
     assert math.pi * result.radius_mm[0] ** 2 == pytest.approx(0.2 * 900, rel=0.35)
 
@@ -254,7 +254,7 @@ def test_darkness_out_of_range_is_refused(bad):
     picture = np.full((5, 5), 0.5)
     picture[2, 2] = bad
     with pytest.raises(ParameterError, match="darkness"):
-        finished(picture, Plan(n_dots=10))
+        finished(picture, Style(n_dots=10))
 
 
 def test_pulses_alone_come_in_pixels():
@@ -269,8 +269,8 @@ def test_pulses_alone_come_in_pixels():
 @pytest.mark.parametrize("iterations", [0, 6])
 def test_sizes_by_region_are_the_paper_s(iterations):
     darkness = ramp(200, 300)
-    plan = Plan(n_dots=3000, iterations=iterations, sizes="regions")
-    result = finished(darkness, plan)
+    style = Style(n_dots=3000, iterations=iterations, sizes="regions")
+    result = finished(darkness, style)
     assert abs(len(result.position_mm) - 3000) <= 60
     radius, under = result.radius_mm, pixels_under(result, darkness)
     middle = radius[(under > 0.4) & (under < 0.6)]
@@ -284,7 +284,7 @@ def test_sizes_by_region_are_the_paper_s(iterations):
 
 def test_sizes_by_region_need_pulses():
     with pytest.raises(ParameterError, match=r"^sizes: random has no regions"):
-        Plan(sizes="regions", first_dots="random")
+        Style(sizes="regions", first_dots="random")
 
 
 @pytest.mark.parametrize("start", ["top", "border"])
@@ -311,7 +311,7 @@ def test_an_area_smaller_than_a_dot_or_white():
 def test_what_is_missing_is_said_with_how_much_and_where():
     darkness = np.zeros((100, 100), np.float32)
     darkness[40:80, 10:30] = 1.0
-    result = finished(darkness, Plan(n_dots=40, size_range_mm=(0.5, 1.0), iterations=2), 50.0)
+    result = finished(darkness, Style(n_dots=40, size_range_mm=(0.5, 1.0), iterations=2), 50.0)
     (note,) = notes_on(result)
     assert note.startswith("8.0 % of the page is too dark")
     assert "between 5.0, 20.0 and 15.0, 40.0 mm" in note

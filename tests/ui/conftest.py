@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.window.scripted_host import Host
 
 
@@ -47,8 +47,8 @@ def desk(kernels: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iter
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("STIPPLER_SCALE", raising=False)
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
-    plan = Plan(n_dots=300, iterations=4)
-    app = App(plan, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True)
+    style = Style(n_dots=300, iterations=4)
+    app = App(style, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True)
     try:
         yield Desk(app, Host(app.window, app.editor, app.step))
     finally:

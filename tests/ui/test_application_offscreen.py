@@ -14,7 +14,7 @@ from PIL import Image
 
 import stippler
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.panels.layout import DRAWING, HISTORY, TOOL, VIEW
 from stippler.ui.preferences import FILE, Preferences
 from stippler.ui.theme import DARK, PANEL_WIDTH, STRIP_WIDTH
@@ -39,11 +39,11 @@ def start(kernels: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Ite
         while running:
             running.pop().close()
         kept = Preferences.load(tmp_path / "settings")
-        plan, tone, width_mm = kept.begin(
-            Plan(n_dots=300, iterations=4), "linear", 120.0, {"n_dots", "iterations"}
+        style, tone, width_mm = kept.begin(
+            Style(n_dots=300, iterations=4), "linear", 120.0, {"n_dots", "iterations"}
         )
         app = App(
-            plan, tone=tone, width_mm=width_mm, size=(1000, 700), preferences=kept, offscreen=True
+            style, tone=tone, width_mm=width_mm, size=(1000, 700), preferences=kept, offscreen=True
         )
         running.append(app)
         return Desk(app, Host(app.window, app.editor, app.step))
@@ -290,7 +290,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(start: Start, tmp_path: Pat
 def test_the_window_is_as_large_as_it_was(kernels: None, tmp_path: Path) -> None:
     kept = Preferences(tmp_path)
     kept.place = Place((900, 650))
-    app = App(Plan(), tone="linear", width_mm=50.0, preferences=kept, offscreen=True)
+    app = App(Style(), tone="linear", width_mm=50.0, preferences=kept, offscreen=True)
     try:
         assert app.window.size_px == (900, 650)
         app.step(0.0)

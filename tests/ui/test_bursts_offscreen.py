@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from stippler.app import App
 from stippler.drawing.drawing import Page
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.panels.layout import TOOL
 from stippler.ui.window.scripted_host import Host
 
@@ -94,7 +94,7 @@ def test_chords_and_words_of_one_burst_reach_a_field(desk) -> None:
         desk.host.key("left")
         desk.host.type("5")
         desk.host.key("enter")
-    assert desk.app.session.plan.n_dots == 757
+    assert desk.app.session.style.n_dots == 757
 
 
 def test_the_palette_is_opened_and_filled_in_one_burst(desk) -> None:
@@ -198,8 +198,8 @@ def test_controls_have_one_size_in_units_on_every_screen(
 ) -> None:
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
     monkeypatch.delenv("STIPPLER_SCALE", raising=False)
-    plan = Plan(n_dots=300, iterations=4)
-    app = App(plan, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True, ratio=ratio)
+    style = Style(n_dots=300, iterations=4)
+    app = App(style, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True, ratio=ratio)
     try:
         host = Host(app.window, app.editor, app.step)
         assert app.window.size_px == (1000 * ratio, 700 * ratio)

@@ -13,7 +13,7 @@ def test_a_new_page_is_filled_and_emptied_again(desk) -> None:
     desk.host.until(lambda: session.paintable, "the page")
     desk.host.settle()
     desk.host.fill("Fill with", "500")
-    desk.host.click("Random")
+    desk.host.click("By chance")
     desk.host.fill("Dot radius", "0.8")
     desk.host.click("Fill the page")
     desk.host.until(lambda: session.n_dots == 500 and not session.busy, "the dots")

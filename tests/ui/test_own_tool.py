@@ -11,10 +11,10 @@ from stippler.app import App
 from stippler.brushes.kinds import Parameter
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
+from stippler.drawing.style import Style
 from stippler.editor.events import LEFT, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.tools import toolbox as toolbox_module
 from stippler.editor.tools.tool import NOTHING, RESTING, Handle, Overlay, Path, Tool
-from stippler.stippling.plan import Plan
 from stippler.ui.window.scripted_host import Host
 
 
@@ -75,8 +75,8 @@ def host(kernels: None, monkeypatch, tmp_path):
     made = []
 
     def start() -> Host:
-        plan = Plan(n_dots=300, iterations=4)
-        app = App(plan, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True)
+        style = Style(n_dots=300, iterations=4)
+        app = App(style, tone="linear", width_mm=120.0, size=(1000, 700), offscreen=True)
         made.append(app)
         host = Host(app.window, app.editor, app.step)
         host.app = app

@@ -103,9 +103,9 @@ def test_only_what_changed_is_uploaded(desk, picture: Path, monkeypatch) -> None
 def test_painting_goes_on_while_all_dots_relax(desk, picture: Path) -> None:
     document = opened(desk, picture)
     session = desk.app.session
-    session.edit_plan(spacing="lloyd")  # which never rests
+    session.edit_style(spacing="lloyd")  # which never rests
     start = document.dots.copy()
-    desk.host.fill("Iterations", "100000")
+    desk.host.fill("Evening out", "100000")
     desk.host.click("Relax all")
     desk.host.until(lambda: session.done > 2, "some steps")
     desk.host.key("k")
@@ -225,7 +225,7 @@ def test_stippling_again_is_a_step_that_can_be_taken_back(desk, picture: Path) -
 
 def test_dots_that_are_still_being_stippled_are_painted_on(desk, picture: Path) -> None:
     session = desk.app.session
-    session.edit_plan(n_dots=2000, iterations=100_000)
+    session.edit_style(n_dots=2000, iterations=100_000)
     desk.host.drop(picture)
     desk.host.until(lambda: session.stage == "relax" and session.done > 1, "the relaxation")
     assert not session.paintable
@@ -258,7 +258,7 @@ def test_a_stippling_painted_on_ends_with_radii_for_the_dots_nobody_touched(
     desk, picture: Path
 ) -> None:
     session = desk.app.session
-    session.edit_plan(n_dots=2000, iterations=60)
+    session.edit_style(n_dots=2000, iterations=60)
     desk.host.drop(picture)
     desk.host.until(lambda: session.stage == "relax" and session.done > 1, "the relaxation")
     session.pause()

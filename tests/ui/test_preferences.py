@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.preferences import FILE, LAYOUT_FILE, N_RECENT, Preferences
 from stippler.ui.theme import DARK, LIGHT
 from stippler.ui.window.placement import Place
@@ -98,7 +98,7 @@ def test_a_bad_part_is_one_line_and_the_others_are_used(
     if part != "look":
         assert kept.look.theme is DARK
     if part == "values":
-        assert kept.begin(Plan(), "linear", 148.0, ()) == (Plan(), "linear", 148.0)
+        assert kept.begin(Style(), "linear", 148.0, ()) == (Style(), "linear", 148.0)
 
 
 def test_unknown_parts_of_the_look_are_ignored(tmp_path: Path) -> None:
@@ -119,15 +119,15 @@ def test_a_layout_that_is_no_text_is_told(tmp_path: Path) -> None:
 def test_what_the_command_line_asks_for_counts_more(tmp_path: Path) -> None:
     written(tmp_path)
     kept = Preferences.load(tmp_path)
-    plan, tone, width_mm = kept.begin(Plan(), "linear", 148.0, ())
-    assert (plan.n_dots, plan.iterations, tone, width_mm) == (5000, 7, "perceptual", 90.0)
-    assert plan.seed == 1
-    asked = Plan(iterations=3)
-    plan, tone, width_mm = kept.begin(asked, "linear", 148.0, {"iterations", "tone"})
-    assert (plan.n_dots, plan.iterations, tone, width_mm) == (5000, 3, "linear", 90.0)
+    style, tone, width_mm = kept.begin(Style(), "linear", 148.0, ())
+    assert (style.n_dots, style.iterations, tone, width_mm) == (5000, 7, "perceptual", 90.0)
+    assert style.seed == 1
+    asked = Style(iterations=3)
+    style, tone, width_mm = kept.begin(asked, "linear", 148.0, {"iterations", "tone"})
+    assert (style.n_dots, style.iterations, tone, width_mm) == (5000, 3, "linear", 90.0)
     # one of number and sizes follows from the other: both are then the command line's
-    plan, _, _ = kept.begin(Plan(size_range_mm=(0.2, 0.4)), "linear", 1.0, {"size_range_mm"})
-    assert (plan.n_dots, plan.size_range_mm) == (None, (0.2, 0.4))
+    style, _, _ = kept.begin(Style(size_range_mm=(0.2, 0.4)), "linear", 1.0, {"size_range_mm"})
+    assert (style.n_dots, style.size_range_mm) == (None, (0.2, 0.4))
 
 
 def test_ten_recent_pictures_the_last_first() -> None:

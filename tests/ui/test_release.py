@@ -10,7 +10,7 @@ import moderngl
 import pytest
 
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.panels.layout import SHAPE
 from stippler.ui.window.scripted_host import Host
 
@@ -34,8 +34,8 @@ def test_closing_releases_every_gl_object(
     for name in MAKERS:
         monkeypatch.setattr(moderngl.Context, name, watched(name))
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path))
-    plan = Plan(n_dots=300, iterations=2)
-    app = App(plan, tone="linear", width_mm=120.0, size=(900, 600), offscreen=True)
+    style = Style(n_dots=300, iterations=2)
+    app = App(style, tone="linear", width_mm=120.0, size=(900, 600), offscreen=True)
     monkeypatch.setattr(app.window.ctx, "release", lambda: None)  # would take all with it
     host = Host(app.window, app.editor, app.step)
     host.drop(picture)

@@ -12,7 +12,7 @@ import pytest
 
 import stippler
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.window.scripted_host import Host
 
 
@@ -143,10 +143,10 @@ PAINTER = """
 import sys
 from pathlib import Path
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.window.scripted_host import Host
 picture, root = map(Path, sys.argv[1:])
-app = App(Plan(n_dots=300, iterations=4), tone="linear", width_mm=120.0, size=(1000, 700),
+app = App(Style(n_dots=300, iterations=4), tone="linear", width_mm=120.0, size=(1000, 700),
           offscreen=True, recovery=root)
 host = Host(app.window, app.editor, app.step)
 app.session.open(picture)
@@ -178,7 +178,7 @@ def test_a_killed_window_is_offered_back_and_is_as_it_was(
     assert counts == sorted(counts, reverse=True)
     assert len(set(counts)) > 1, "nothing was erased"
     app = App(
-        Plan(n_dots=300, iterations=4), tone="linear", width_mm=120.0, size=(1000, 700),
+        Style(n_dots=300, iterations=4), tone="linear", width_mm=120.0, size=(1000, 700),
         offscreen=True, recovery=root,
     )  # fmt: skip
     host = Host(app.window, app.editor, app.step)

@@ -12,12 +12,12 @@ import pytest
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.editor.messages import ERROR, INFO, WARNING
 from stippler.editor.session import Session
 from stippler.errors import OutputError, PictureError
 from stippler.jobs.work import Source, Work
 from stippler.jobs.worker import Update
-from stippler.stippling.plan import Plan
 from stippler.stippling.stipple import Progress
 from stippler.stippling.tone import Shortfall
 
@@ -58,19 +58,19 @@ class Stage:
 
     def __init__(self) -> None:
         self.worker, self.exporter, self.clock = HandWorker(), HandWorker(), Clock()
-        self.asked: list[tuple[Source, Plan, Reference | None]] = []
+        self.asked: list[tuple[Source, Style, Reference | None]] = []
         self.session = Session(
             self.worker,  # type: ignore[arg-type]
             self.exporter,  # type: ignore[arg-type]
-            Plan(n_dots=10),
+            Style(n_dots=10),
             tone="linear",
             width_mm=100.0,
             stipple=self._stipple,
             clock=self.clock,
         )
 
-    def _stipple(self, source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
-        self.asked.append((source, plan, reference))
+    def _stipple(self, source: Source, style: Style, reference: Reference | None) -> Iterator[Work]:
+        self.asked.append((source, style, reference))
         return iter(())
 
     def tell(self, work: Work | None, ended: str = "", request: int | None = None, **more: Any):
@@ -78,7 +78,7 @@ class Stage:
         self.worker.update = Update(request, work, ended, more.get("failure"), 1)
         return self.session.poll()
 
-    def last_job(self) -> tuple[Source, Plan, Reference | None]:
+    def last_job(self) -> tuple[Source, Style, Reference | None]:
         list(self.worker.jobs[-1]())
         return self.asked[-1]
 
@@ -111,7 +111,7 @@ def test_a_picture_is_opened_stippled_and_becomes_a_drawing(stage: Stage) -> Non
     assert (session.phase, session.drawing, session.n_dots) == ("empty", None, 0)
     session.open(Path("shell.png"))
     assert (session.phase, session.stage, session.name) == ("running", "read", "shell.png")
-    assert stage.last_job() == (Source(Path("shell.png"), "linear", 100.0), Plan(n_dots=10), None)
+    assert stage.last_job() == (Source(Path("shell.png"), "linear", 100.0), Style(n_dots=10), None)
     picture = reference()
     stage.tell(Work("read", 1, 1, picture))
     assert session.drawing is not None
@@ -230,17 +230,17 @@ def test_start_uses_the_plan_and_what_has_been_read(stage: Stage) -> None:
     picture = opened(stage)
     session = stage.session
     assert not session.outdated
-    assert session.edit_plan(n_dots=99, seed=7)
+    assert session.edit_style(n_dots=99, seed=7)
     assert session.outdated
     session.start()
-    source, plan, known = stage.last_job()
-    assert (plan.n_dots, plan.seed) == (99, 7)
+    source, style, known = stage.last_job()
+    assert (style.n_dots, style.seed) == (99, 7)
     assert known is picture
     assert not session.outdated
     session.tone = "perceptual"
     assert session.outdated
     session.start()  # another tone is another reference
-    source, plan, known = stage.last_job()
+    source, style, known = stage.last_job()
     assert (source.tone, known) == ("perceptual", None)
 
 
@@ -252,10 +252,10 @@ def test_start_with_nothing_open_says_so(stage: Stage) -> None:
 
 def test_restart_while_it_runs_takes_the_same_picture(stage: Stage) -> None:
     stage.session.open(Path("shell.png"))
-    stage.session.edit_plan(iterations=3)
+    stage.session.edit_style(iterations=3)
     stage.session.start()
-    source, plan, _ = stage.last_job()
-    assert (source.path.name, plan.iterations) == ("shell.png", 3)
+    source, style, _ = stage.last_job()
+    assert (source.path.name, style.iterations) == ("shell.png", 3)
 
 
 @pytest.mark.parametrize(
@@ -271,9 +271,9 @@ def test_restart_while_it_runs_takes_the_same_picture(stage: Stage) -> None:
     ],
 )
 def test_a_bad_value_is_refused_with_a_line(stage: Stage, changes: dict[str, Any]) -> None:
-    plan = stage.session.plan
-    assert not stage.session.edit_plan(**changes)
-    assert stage.session.plan is plan
+    style = stage.session.style
+    assert not stage.session.edit_style(**changes)
+    assert stage.session.style is style
     line = stage.session.messages.current
     assert line is not None
     assert line.level == WARNING
@@ -493,7 +493,7 @@ def test_a_restart_shows_other_dots_at_once_and_leaves_one_step(stage: Stage) ->
     document.change("constraint", np.arange(5), np.ones(5, np.int8))
     document.commit()
     for shift in (1.0, 2.0):  # begun, and begun again before the end
-        session.edit_plan(seed=int(shift))
+        session.edit_style(seed=int(shift))
         session.start()
         cursor = document.changes.now
         stage.tell(Work("relax", 4, 20, session.reference, dots(5, shift=shift)))
@@ -503,7 +503,7 @@ def test_a_restart_shows_other_dots_at_once_and_leaves_one_step(stage: Stage) ->
     assert [step.label for step in document.history.steps] == ["Fix", "Stipple"]
     session.undo()
     assert document.dots.fixed.all()
-    assert session.drawing.style_of(0) == Plan(n_dots=10)
+    assert session.drawing.style_of(0) == Style(n_dots=10)
 
 
 def test_a_picture_that_fails_while_dots_are_made_keeps_those(stage: Stage) -> None:

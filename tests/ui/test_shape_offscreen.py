@@ -170,14 +170,14 @@ def test_dots_turn_along_the_picture(shaping) -> None:
 def test_a_drawing_is_made_with_a_pen_and_seen_so_meanwhile(shaping) -> None:
     session, editor = shaping.app.session, shaping.app.editor
     first = session.document.dots.copy()
-    n_steps = session.plan.iterations
-    assert session.edit_plan(pen="stick", iterations=100_000)  # however quick, it is under way
+    n_steps = session.style.iterations
+    assert session.edit_style(pen="stick", iterations=100_000)  # however quick, it is under way
     session.start()
     shaping.host.until(lambda: session.document.in_draft and session.n_dots > 0, "dots")
     assert session.document.dots.roughness.min() > 0.5
     shaping.host.settle()
     assert editor.canvas._made.scene.dots.is_rough
-    session.edit_plan(iterations=n_steps)
+    session.edit_style(iterations=n_steps)
     session.start()
     shaping.host.until(lambda: not session.busy, "the drawing")
     dots = session.document.dots

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.jobs.work import Source, Work
-from stippler.stippling.plan import Plan
 from stippler.ui import editor_window as editor_module
 from stippler.ui.panels.layout import VIEW
 from stippler.ui.theme import DARK, LIGHT
@@ -66,8 +66,8 @@ def test_a_dropped_picture_becomes_dots_that_are_seen(desk, picture: Path) -> No
 def test_start_and_stop_by_their_labels(desk, picture: Path) -> None:
     open_and_finish(desk, picture)
     desk.host.fill("Number", "150")
-    assert desk.app.session.plan.n_dots == 150
-    desk.host.fill("Iterations", "100000")
+    assert desk.app.session.style.n_dots == 150
+    desk.host.fill("Evening out", "100000")
     desk.host.click("Start")
     desk.host.until(lambda: desk.app.session.stage == "relax", "relaxation")
     desk.host.until(lambda: desk.host.shown("Stop"), "the button")
@@ -84,13 +84,13 @@ def test_start_and_stop_by_their_labels(desk, picture: Path) -> None:
 
 def test_bad_numbers_are_refused_in_the_window(desk) -> None:
     desk.host.fill("Number", "0")
-    assert desk.app.session.plan.n_dots == 300
-    assert "0 dots" in desk.host.said()
+    assert desk.app.session.style.n_dots == 300
+    assert "dots: 0 is out of range" in desk.host.said()
     assert desk.host.shown("notice")
     desk.host.click("notice")
     assert not desk.host.shown("notice")
-    desk.host.fill("Iterations", "-3")
-    assert desk.app.session.plan.iterations == 4
+    desk.host.fill("Evening out", "-3")
+    assert desk.app.session.style.iterations == 4
     desk.host.fill("Width", "0")
     assert desk.app.session.width_mm == 120.0
 
@@ -98,19 +98,20 @@ def test_bad_numbers_are_refused_in_the_window(desk) -> None:
 def test_sizes_seed_method_and_tone_change_the_plan(desk) -> None:
     session = desk.app.session
     desk.host.click("In mm")
-    assert session.plan.size_range_mm == (0.12, 0.24)
+    assert session.style.size_range_mm == (0.12, 0.24)
     desk.host.click("As many dots as it takes")
-    assert session.plan.n_dots is None
+    assert session.style.n_dots is None
     desk.host.click("Automatic")
-    assert (session.plan.size_range_mm, session.plan.n_dots) == (None, 20_000)
-    seed = session.plan.seed
+    assert (session.style.size_range_mm, session.style.n_dots) == (None, None)
+    seed = session.style.seed
+    desk.host.click("More dots")
     desk.host.click("Another seed")
-    assert session.plan.seed != seed
+    assert session.style.seed != seed
     desk.host.click("As in file")
     assert session.tone == "perceptual"
     desk.host.click("First dots")
     desk.host.key("down")
-    assert session.plan.first_dots == "pulse-density"
+    assert session.style.first_dots == "pulse-density"
 
 
 def test_pan_zoom_and_fit(desk, picture: Path) -> None:
@@ -145,6 +146,7 @@ def test_pan_zoom_and_fit(desk, picture: Path) -> None:
 
 
 def test_a_letter_typed_into_a_field_is_no_command(desk) -> None:
+    desk.host.click("More dots")
     desk.host.click("Seed")
     desk.host.key("t")
     assert desk.app.editor.look.theme is LIGHT
@@ -276,7 +278,7 @@ def test_a_faulty_panel_is_told_and_the_editor_lives_on(
 
 
 def test_a_job_that_dies_is_told(desk, picture: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def dying(source: Source, plan: Plan, reference: Reference | None) -> Iterator[Work]:
+    def dying(source: Source, style: Style, reference: Reference | None) -> Iterator[Work]:
         yield Work("read")
         raise ZeroDivisionError("a test's own")
 
@@ -291,10 +293,10 @@ def test_a_job_that_dies_is_told(desk, picture: Path, monkeypatch: pytest.Monkey
 def test_a_second_picture_supersedes_the_first(desk, picture: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.png"
     Image.new("L", (60, 60), 128).save(other)
-    desk.app.session.edit_plan(iterations=100_000)
+    desk.app.session.edit_style(iterations=100_000)
     desk.host.drop(picture)
     desk.host.until(lambda: desk.app.session.stage == "relax", "relaxation")
-    desk.app.session.edit_plan(iterations=2)
+    desk.app.session.edit_style(iterations=2)
     desk.host.drop(other)
     desk.host.until(lambda: desk.app.session.phase == "done", "the second drawing")
     assert desk.app.session.name == "other.png"
@@ -317,7 +319,7 @@ def test_it_sleeps_when_nothing_changes(desk, picture: Path) -> None:
 def test_closing_while_work_runs_ends_at_once(kernels: None, picture: Path) -> None:
     from stippler.app import App
 
-    app = App(Plan(n_dots=300, iterations=100_000), tone="linear", width_mm=50.0, offscreen=True)
+    app = App(Style(n_dots=300, iterations=100_000), tone="linear", width_mm=50.0, offscreen=True)
     app.session.open(picture)
     while app.session.stage != "relax":
         app.step(0.05)

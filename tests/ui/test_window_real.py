@@ -15,7 +15,7 @@ import pytest
 from PIL import ImageGrab
 
 from stippler.app import App
-from stippler.stippling.plan import Plan
+from stippler.drawing.style import Style
 from stippler.ui.theme import LIGHT, Colour
 from stippler.ui.window.scripted_host import Host
 
@@ -60,7 +60,7 @@ def display() -> Iterator[str]:
 @pytest.fixture(scope="module")
 def places() -> Iterator[dict[str, tuple[float, float]]]:
     """Where the controls are, found in the same editor without a display."""
-    app = App(Plan(), tone="linear", width_mm=148.0, size=SIZE, offscreen=True)
+    app = App(Style(), tone="linear", width_mm=148.0, size=SIZE, offscreen=True)
     try:
         host = Host(app.window, app.editor, app.step)
         yield {label: host.place(label) for label in app.editor.widgets.marks}

@@ -72,6 +72,26 @@ def move_handles(
     return _moved(before, {arc: Arc(path, old.left, old.right)})
 
 
+def reshape(before: PlanarMap, paths: Mapping[int, Path]) -> Outcome:
+    """Give borders other paths between the same ends.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such border, an end is elsewhere, or borders would then cross.
+    """
+    changed = {}
+    for k, path in paths.items():
+        if k not in before.arcs:
+            raise GeometryError("is not there", f"border {k}")
+        old = before.arcs[k]
+        both_closed = path.is_closed and old.path.is_closed
+        if not both_closed and (path.vertices[[0, -1]] != old.path.vertices[[0, -1]]).any():
+            raise GeometryError("would end elsewhere", f"border {k}", "move its nodes")
+        changed[k] = Arc(path, old.left, old.right)
+    return _moved(before, changed)
+
+
 def add_node(before: PlanarMap, arc: int, near_mm: tuple[float, float]) -> tuple[Outcome, int]:
     """Add a vertex to a border where it is nearest to a point; return also its index."""
     old = before.arcs[arc]

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from stippler.brushes.kinds import Parameter, Value
-from stippler.editor.events import NO_MODS, Event, Mods, Moved, Pressed, Released, Scrolled
+from stippler.editor.events import NO_MODS, Event, KeyDown, Mods, Moved, Pressed, Released, Scrolled
 
 if TYPE_CHECKING:
     from stippler.brushes.brush import Brush
     from stippler.drawing.document import Document
     from stippler.drawing.preview import Preview
     from stippler.drawing.reference import Reference
+    from stippler.editor.area_choice import AreaChoice
     from stippler.editor.tools.selection import Selection
 
 Point = tuple[float, float]
@@ -55,6 +56,7 @@ class Desk:
     px_per_mm: float
     next_seed: Callable[[], int]
     say: Callable[[str, str], None]
+    areas: AreaChoice
     mods: Mods = NO_MODS
     heading_rad: float = float("nan")
 
@@ -86,6 +88,7 @@ class Sight:
 
     document: Document | None
     selection: Selection
+    areas: AreaChoice
     at_mm: Point | None
     mm: float
     mods: Mods = NO_MODS
@@ -94,11 +97,18 @@ class Sight:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A line to be drawn over the page, light and dark, so that it shows on ink and on paper."""
+    """A line to be drawn over the page, light and dark, so that it shows on ink and on paper.
+
+    Attributes
+    ----------
+    refused : bool
+        What it stands for cannot be done; it is red.
+    """
 
     points_mm: tuple[Point, ...]
     closed: bool = False
     dashed: bool = False
+    refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +201,8 @@ class Tool:
         Its panel, the palette and what is kept for the next start are made of them.
     commands : tuple of str
         Names of commands that its panel offers as buttons.
+    shows_areas : bool
+        Whether borders of areas are to be seen while it is at hand.
     """
 
     name = ""
@@ -198,11 +210,17 @@ class Tool:
     key = ""
     tip = ""
     commands: tuple[str, ...] = ()
+    shows_areas = False
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return ()
+
+    @property
+    def chosen_text(self) -> str:
+        """Say how much is chosen, above its commands; empty: chosen dots are counted."""
+        return ""
 
     def __init__(self) -> None:
         self.values: dict[str, Value] = {}
@@ -233,6 +251,10 @@ class Tool:
         """Return what lies over the page."""
         return NOTHING
 
+    def wants(self, event: KeyDown, desk: Desk) -> bool:
+        """Return whether a key is for this tool now, before any command has it."""
+        return False
+
     def preview(
         self, at_mm: Point, mods: Mods, heading_rad: float, reference: Reference | None
     ) -> Preview | None:
@@ -243,5 +265,8 @@ class Tool:
         """Enlarge or reduce its tip; return whether it has one."""
         return False
 
+    def put_away(self) -> None:
+        """Another tool is at hand."""
+
     def forget(self) -> None:
-        """Another drawing is open, or the tool is put away."""
+        """Another drawing is open."""

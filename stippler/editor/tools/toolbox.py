@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from stippler.brushes.brush import Brush
 from stippler.brushes.kinds import KINDS
+from stippler.editor.area_choice import AreaChoice
 from stippler.editor.events import (
     LEFT,
     NO_MODS,
@@ -24,6 +25,7 @@ from stippler.editor.events import (
 from stippler.editor.messages import WARNING
 from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
+from stippler.editor.tools.node_tool import NodeTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
 from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Sight, Tool, ToolState
@@ -41,7 +43,8 @@ _VALUES_FILE = "tools.json"
 
 def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
     """Make every tool, in the order of the strip; a new one is a line here."""
-    return (*(BrushTool(kind, shelf) for kind in KINDS), SelectTool())
+    brushes = (BrushTool(kind, shelf) for kind in KINDS)
+    return (*brushes, SelectTool(), NodeTool())
 
 
 class Toolbox:
@@ -62,6 +65,7 @@ class Toolbox:
         The one at hand; without one the pointer only looks around.
     shelf : BrushShelf
     selection : Selection
+    areas : AreaChoice
     state : ToolState
     """
 
@@ -74,6 +78,7 @@ class Toolbox:
         self._by_name = {tool.name: tool for tool in self.tools}
         self.tool: Tool | None = None
         self.selection = Selection()
+        self.areas = AreaChoice()
         self.state: ToolState = RESTING
         self.mods = NO_MODS
         self._n_strokes = seed
@@ -92,6 +97,8 @@ class Toolbox:
         tool = self._by_name[name] if name else None
         if tool is not self.tool:
             self.state = RESTING
+            if self.tool is not None:
+                self.tool.put_away()
         elif isinstance(tool, BrushTool):
             self.shelf.use_next(tool.kind.name)
         self.tool = tool
@@ -162,7 +169,13 @@ class Toolbox:
         if self.tool is None:
             return self.state.overlay
         sight = Sight(
-            document, self.selection, at_mm, 1.0 / px_per_mm, self.mods, is_held=self.is_busy
+            document,
+            self.selection,
+            self.areas,
+            at_mm,
+            1.0 / px_per_mm,
+            self.mods,
+            is_held=self.is_busy,
         )
         own, held = self.tool.overlay(sight), self.state.overlay
         return Overlay(own.paths + held.paths, own.handles + held.handles, held.tip or own.tip)
@@ -181,7 +194,7 @@ class Toolbox:
         self._note_mods(event)
         if self.tool is None:
             return False
-        desk = self._desk(document, page, px_per_mm)
+        desk = self.desk(document, page, px_per_mm)
         if isinstance(event, Moved):
             self._head(page(event.x_px, event.y_px), px_per_mm)
         before = self.state
@@ -202,6 +215,12 @@ class Toolbox:
                 return True
         return False
 
+    def wants(self, event: KeyDown, document: Document) -> bool:
+        """Return whether a key is for the tool at hand, before any command has it."""
+        if self.tool is None or self.is_busy:
+            return False
+        return self.tool.wants(event, self.desk(document, lambda x, y: (x, y), 1.0))
+
     def rest(self, t_s: float) -> None:
         """Let time go on."""
         if self.is_timed:
@@ -214,11 +233,12 @@ class Toolbox:
     def drop(self, document: Document | None) -> None:
         """Give up what is held, and the selection: another drawing is open now."""
         if document is not None and self.is_busy:
-            self.state.cancel(self._desk(document, lambda x, y: (x, y), 1.0))
+            self.state.cancel(self.desk(document, lambda x, y: (x, y), 1.0))
         self.state = RESTING
         for tool in self.tools:
             tool.forget()
         self.selection.forget()
+        self.areas.forget()
 
     def preview(self, at_mm: Point, reference: Reference | None) -> Preview | None:
         """Return what a press would do to the dots, where that can be shown."""
@@ -226,9 +246,10 @@ class Toolbox:
             return None
         return self.tool.preview(at_mm, self.mods, self._heading_rad, reference)
 
-    def _desk(
+    def desk(
         self, document: Document, page: Callable[[float, float], Point], px_per_mm: float
     ) -> Desk:
+        """Return what a tool works with now."""
         return Desk(
             document,
             self.selection,
@@ -236,6 +257,7 @@ class Toolbox:
             px_per_mm,
             self._next_seed,
             self._say,
+            self.areas,
             self.mods,
             self._heading_rad,
         )

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.picture_values import TONES
 from stippler.drawing.tone_curve import illustration
 from stippler.errors import ParameterError, PictureError
 from stippler.files.read.light import (
@@ -26,7 +27,6 @@ from stippler.files.read.light import (
 )
 from stippler.files.read.pixels import CHANNELS, Pixels
 
-TONES = ("illustration", "linear", "perceptual")
 MAX_FIELD_PIXELS = 16_000_000
 """Larger pictures are averaged down to this: 0.04 mm a pixel on A4, below any pen's dot."""
 

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
+from stippler.drawing.picture_values import TONES
 from stippler.drawing.reference import Picture, Reference
 from stippler.errors import ParameterError, PictureError
 from stippler.files.read import jpeg, pillow, png, tiff
-from stippler.files.read.darkness import TONES, check_tone, darkness_of_pixels
+from stippler.files.read.darkness import check_tone, darkness_of_pixels
 from stippler.files.read.kinds import FORMATS_TEXT, HEAD_BYTES, kind_of, told_of
 from stippler.files.read.pixels import Colour, Pixels, of_array
 

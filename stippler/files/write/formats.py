@@ -36,7 +36,12 @@ PLATE = (
     Option("marks", NONE, "Marks to cut and to register by.", choices=(NONE, CROP, ALL)),
     Option("caption", "", "Text under the drawing."),
     Option("letter", "", "Letter in the upper left corner, such as A."),
-)
+    Option("press", None, "A calibrated press, pen or paper: dots are solved for it.", kind=str),
+    Option("gain", None, "How much every edge grows in print; dots are solved for it.",
+           "mm", -1, 1, kind=float),
+    Option("least_dot", None, "Diameter of the smallest dots that the press holds.",
+           "mm", 0, 10, kind=float),
+)  # fmt: skip
 """Options of every picture."""
 
 _DPI = "Pixels an inch."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -25,15 +26,24 @@ _TEXT_MM, _ROW = 2.2, 1.8
 _GAP_MM = 3.0
 
 
-def plate_of(drawing: Drawing, values: Values) -> Sheet:
-    """Return a drawing as a sheet at the size of print, with what goes around it."""
+def plate_of(drawing: Drawing, values: Values, cancel: Callable[[], bool] | None = None) -> Sheet:
+    """Return a drawing as a sheet at the size of print, with what goes around it.
+
+    Parameters
+    ----------
+    cancel : callable, optional
+        Asked now and then while a line is sought; it may raise, or return True: the line is then
+        as it is.
+    """
     sheet = sheet_of(drawing)
     reduction = 1.0
     if values["print_width"] is not None:
         reduction = values["print_width"] / sheet.width_mm
         sheet = sheet.scaled(reduction)
     if values["one_line"] != NONE:
-        sheet = one_line(sheet, values["line_width"], closed=values["one_line"] == CLOSED)
+        closed = values["one_line"] == CLOSED
+        sheet = one_line(sheet, values["line_width"], closed=closed, cancel=cancel)
+    sheet = for_press(sheet, values)
     lines = _letter(values["letter"])
     under, used_mm = _under(sheet, values, reduction)
     layers = [*sheet.layers]
@@ -43,14 +53,32 @@ def plate_of(drawing: Drawing, values: Values) -> Sheet:
     return _marked(sheet, values["marks"]) if values["marks"] != NONE else sheet
 
 
-def one_line(sheet: Sheet, width: float, *, closed: bool) -> Sheet:
+def for_press(sheet: Sheet, values: Values) -> Sheet:
+    """Return a sheet that the press chosen prints as the one given looks."""
+    gain, least = values.get("gain"), values.get("least_dot")
+    if values.get("press") is not None:
+        from stippler.files.presses import press_named
+
+        press = press_named(values["press"])
+        gain = press.gain_mm if gain is None else gain
+        least = press.least_dot_mm if least is None else least
+    if not gain and not least:
+        return sheet
+    from stippler.files.write.press import solved
+
+    return solved(sheet, gain or 0.0, least or 0.0)
+
+
+def one_line(
+    sheet: Sheet, width: float, *, closed: bool, cancel: Callable[[], bool] | None = None
+) -> Sheet:
     """Return a sheet whose dots are joined, in each layer by one line that never crosses itself."""
     layers = []
     for layer in sheet.layers:
         points = layer.dots.position_mm
         lines = layer.lines
         if len(points):
-            order = tour(points, closed=closed, effort=LINE_EFFORT)
+            order = tour(points, closed=closed, effort=LINE_EFFORT, cancel=cancel)
             is_closed = closed and len(points) > 2
             lines = (*lines, Line(points[order], width, is_closed))
         layers.append(replace(layer, dots=Dots.none(), lines=lines))

@@ -147,8 +147,8 @@ def layers_of(drawing: Drawing) -> Iterator[Layer]:
     if not listed.all():
         yield Layer("no area", _taken(dots, np.flatnonzero(~listed)))
     every: list[Any] = [line for _, line in sorted(drawing.lines.items())]
-    printed = [line for line in every if line.printed]
-    even = [line for line in printed if line.width_mm[0] == line.width_mm[1] > 0]
+    printed = [line for line in every if line.is_inked]
+    even = [line for line in printed if line.width_mm[0] == line.width_mm[1]]
     tapered = [line for line in printed if line.width_mm[0] != line.width_mm[1]]
     if even or tapered:
         lines = tuple(_line(one) for one in even)

@@ -40,6 +40,9 @@ _BLOCK = 8192
 _PATH_BLOCK = 2048  # their text is made in room that stays in the cache
 _PATH_DECIMALS = 1  # more than positions get
 _RADIUS_DECIMALS = 1
+_MANY = 2_000  # round dots whose circles are in units of the last decimal: no points, fewer bytes
+_WHOLE_RADIUS = 100  # such units: radii of so many are whole, with the ink kept on average
+_GOLDEN = 0.6180339887498949
 
 # a picture of one white pixel: viewers show paper, while plotters and lasers look for paths
 _WHITE = (
@@ -105,7 +108,7 @@ def gzipped(parts: Iterator[bytes]) -> Iterator[bytes]:
     """Yield the same, compressed, without a date or a name."""
     import zlib
 
-    deflate = zlib.compressobj(6, zlib.DEFLATED, 31)
+    deflate = zlib.compressobj(7, zlib.DEFLATED, 31, zlib.DEF_MEM_LEVEL, zlib.Z_FILTERED)
     for part in parts:
         if packed := deflate.compress(part):
             yield packed
@@ -186,14 +189,7 @@ def _line(line: Line, decimals: int) -> bytes:
 def _dots(dots: Dots, decimals: int, round_dots: str, color: str) -> Iterator[bytes]:
     is_round, smooth, rough = kinds(dots)
     if round_dots == CIRCLES:
-        for some in _blocks(is_round, _BLOCK):
-            yield svg_text.circles(
-                dots.position_mm[some],
-                dots.radius_mm[some],
-                decimals,
-                decimals + _RADIUS_DECIMALS,
-            )
-            yield b"\n"
+        yield from _circles(dots, is_round, decimals)
     elif len(is_round):
         yield (f'<g fill="none" stroke="{color}" stroke-linecap="round">\n').encode()
         draw = _strokes if round_dots == COMPOUND else _taps
@@ -206,6 +202,32 @@ def _dots(dots: Dots, decimals: int, round_dots: str, color: str) -> Iterator[by
     for (above, _), (limit, n_segments) in pairwise(SEGMENTS):
         for some in _blocks(rough[(roughness > above) & (roughness <= limit)], _PATH_BLOCK):
             yield svg_text.paths(dots.take(some), n_segments, finer)
+
+
+def _circles(dots: Dots, rows: NDArray[np.intp], decimals: int) -> Iterator[bytes]:
+    """Circles in mm; many of them in units of the last decimal, under one scale."""
+    per_mm, of_radius = 1.0, decimals + _RADIUS_DECIMALS
+    radius = dots.radius_mm[rows].astype(np.float64)
+    if len(rows) >= _MANY and decimals:
+        per_mm, decimals, of_radius = 10.0**decimals, 0, _RADIUS_DECIMALS
+        radius *= per_mm
+        if radius.min() >= _WHOLE_RADIUS:
+            radius, of_radius = _whole(radius), 0
+        yield f'<g transform="scale({number(1 / per_mm)})">\n'.encode()
+    for start in range(0, len(rows), _BLOCK):
+        some = slice(start, start + _BLOCK)
+        place = dots.position_mm[rows[some]] * per_mm
+        yield svg_text.circles(place, radius[some], decimals, of_radius)
+        yield b"\n"
+    if per_mm != 1.0:
+        yield b"</g>\n"
+
+
+def _whole(radius: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round up or down in turns, so that radii are the same on average: dots of one size, too."""
+    turns = (np.arange(len(radius)) * _GOLDEN) % 1.0
+    exact = np.round(radius, 2)  # what single precision adds to a whole number is not rounded up
+    return np.asarray(np.where(exact == np.rint(exact), exact, np.floor(exact + turns)))
 
 
 def _strokes(dots: Dots, decimals: int) -> Iterator[bytes]:

@@ -67,7 +67,7 @@ def _write_paths(start, stop, chain, decimals, out, length):
 
 def circles(
     position_mm: NDArray[np.float64],
-    radius_mm: NDArray[np.float32],
+    radius_mm: NDArray[np.floating],
     decimals: int,
     radius_decimals: int,
 ) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from stippler.editor.commands import Commands
 from stippler.ui.actions.files import edit_commands, file_commands, help_commands, work_commands
+from stippler.ui.actions.nodes import node_commands
 from stippler.ui.actions.parts import Parts
 from stippler.ui.actions.tools import selection_commands, tool_commands
 from stippler.ui.actions.views import panel_commands, view_commands
@@ -18,6 +19,7 @@ def commands_for(parts: Parts) -> Commands:
         edit_commands,
         selection_commands,
         work_commands,
+        node_commands,
         tool_commands,
         view_commands,
         panel_commands,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from stippler.drawing.picture_values import TONES
+from stippler.drawing.style import Style
 from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Key
 from stippler.editor.print_check import PrintCheck
-from stippler.stippling.plan import Plan
 from stippler.ui.actions.parts import Parts
-from stippler.ui.preferences import TONES
 from stippler.units import DEFAULT_WIDTH_MM
 
 
@@ -61,7 +61,7 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     session = parts.session
 
     def relax_all() -> None:
-        session.relax(session.plan.iterations or 20, weighted=session.plan.weighted)
+        session.relax(session.style.iterations or 20, weighted=session.style.weighted)
 
     def hold() -> None:
         if session.phase == "paused":
@@ -70,7 +70,7 @@ def work_commands(parts: Parts) -> Iterator[Command]:
             session.pause()
 
     def reset() -> None:
-        session.plan = Plan()
+        session.style = Style()
         session.tone, session.width_mm = TONES[0], DEFAULT_WIDTH_MM
 
     def is_busy() -> bool:

@@ -84,7 +84,7 @@ def tool_commands(parts: Parts) -> Iterator[Command]:
     yield Command("tool.none", "No tool", lambda: toolbox.choose(""), (Key("v"),),
                   is_on=lambda: toolbox.tool is None)  # fmt: skip
     for tool in toolbox.tools:
-        keys = (Key(tool.key),) if tool.key else ()
+        keys = (Key.read(tool.key),) if tool.key else ()
         yield Command(f"tool.{tool.name}", tool.label, chooser(tool.name), keys,
                       is_on=used(tool.name))  # fmt: skip
     shelf = toolbox.shelf

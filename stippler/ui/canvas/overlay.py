@@ -13,6 +13,7 @@ from stippler.ui.canvas.lens import Glass
 from stippler.ui.widgets import Rect
 
 _DARK, _LIGHT = 0xFF201810, 0xE0FFFFFF  # ImGui's order: alpha, blue, green, red
+_REFUSED = 0xFF2020D0
 _CHOSEN = 0xFF785F2F
 _HANDLE, _DASH = 5.0, 5.0
 _LEAST_PX = 3.0  # a tip smaller than this gets a cross
@@ -36,7 +37,10 @@ def draw_overlay(overlay: Overlay, view: View, canvas: Rect, scale: float, ratio
         return [(float(x) + canvas[0], float(y) + canvas[1]) for x, y in points]
 
     for path in overlay.paths:
-        draw_outline(draw, placed(path.points_mm), closed=path.closed, dashed=path.dashed)
+        dark = _REFUSED if path.refused else _DARK
+        draw_outline(
+            draw, placed(path.points_mm), closed=path.closed, dashed=path.dashed, dark=dark
+        )
     if overlay.tip is not None:
         brush, at_mm = overlay.tip.brush, overlay.tip.at_mm
         outline = brush.tip.outline(brush.radius_mm, 64) + at_mm
@@ -85,6 +89,7 @@ def draw_outline(
     *,
     closed: bool = False,
     dashed: bool = False,
+    dark: int = _DARK,
 ) -> None:
     """Draw a line, light and dark; in ImGui's coordinates."""
     if len(points) < 2:
@@ -93,7 +98,7 @@ def draw_outline(
         _draw_dashes(draw, [*points, points[0]] if closed else points)
         return
     flags = imgui.ImDrawFlags_.closed if closed else imgui.ImDrawFlags_.none
-    for colour, width in ((_LIGHT, 3.0), (_DARK, 1.2)):
+    for colour, width in ((_LIGHT, 3.0), (dark, 1.2 if dark == _DARK else 2.0)):
         draw.add_polyline(list(points), colour, width, flags)
 
 

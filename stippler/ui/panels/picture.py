@@ -6,18 +6,13 @@ import math
 
 from imgui_bundle import imgui
 
-from stippler.drawing.drawing import MAX_PAGE_MM
+from stippler.drawing.page import MAX_PAGE_MM
+from stippler.drawing.picture_values import TONE, WIDTH
 from stippler.editor.commands import Commands
 from stippler.editor.session import Session
+from stippler.ui.panels.parameters import draw_parameter
 from stippler.ui.theme import ICON_NEW, ICON_OPEN, ICON_SAVE
 from stippler.ui.widgets import Widgets
-
-_TONES = ("illustration", "linear", "perceptual")
-_TONE_TIPS = (
-    "As an illustrator would draw it: highlights are paper, deep parts stay just open.",
-    "The ink covers as much of the paper as the picture's light is missing: right at arm's length.",
-    "The ink follows the numbers in the file: darker, as if each grey value were a share of ink.",
-)
 
 
 def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None:
@@ -49,16 +44,8 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
         enabled=session.n_dots > 0,
     ):
         commands["file.export_as"].run()
-    chosen = widgets.segments(
-        "Tone",
-        ("Drawn", "By light", "As in file"),
-        _TONES.index(session.tone),
-        _TONE_TIPS,
-    )
-    session.tone = _TONES[chosen]
-    typed = widgets.length(
-        "Width", session.width_mm, "Width of the page in mm; its height follows from the picture."
-    )
+    session.tone = draw_parameter(widgets, TONE, session.tone)
+    typed = draw_parameter(widgets, WIDTH, session.width_mm)
     if math.isfinite(typed) and typed > 0:
         session.width_mm = min(typed, MAX_PAGE_MM)
 

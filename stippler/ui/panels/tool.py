@@ -42,7 +42,9 @@ def draw_tool(widgets: Widgets, toolbox: Toolbox, commands: Commands, n_selected
             tool.set(name, value)
     if tool.commands:
         widgets.rule()
-        _draw_commands(widgets, commands, tool.commands, n_selected)
+        dots = f"{n_selected:,} dots selected" if n_selected else "No dots selected"
+        widgets.caption(tool.chosen_text or dots)
+        _draw_commands(widgets, commands, tool.commands)
 
 
 def _draw_parameters(widgets: Widgets, tool: Tool) -> dict[str, Value]:
@@ -198,10 +200,7 @@ def _draw_stroke(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> Non
         changes["pressure"] = _PRESSURES[chosen]
 
 
-def _draw_commands(
-    widgets: Widgets, commands: Commands, names: tuple[str, ...], n_selected: int
-) -> None:
-    widgets.caption(f"{n_selected:,} dots selected" if n_selected else "No dots selected")
+def _draw_commands(widgets: Widgets, commands: Commands, names: tuple[str, ...]) -> None:
     width = (imgui.get_content_region_avail().x - widgets.gap) / 2
     for k, name in enumerate(names):
         command = commands[name]
