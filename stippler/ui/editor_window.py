@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from stippler.drawing.preview import Preview
 from stippler.editor.batches import parts_of
+from stippler.editor.commands import Key
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -29,22 +30,24 @@ from stippler.editor.shaping import Shaping
 from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
+from stippler.jobs.work import PREPARE
 from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.canvas.pen_samples import PenSamples
+from stippler.ui.field_commands import FieldCommands
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.menu import MenuBar
-from stippler.ui.panels.notice import draw_invitation, draw_notice
+from stippler.ui.panels.notice import draw_invitation, draw_notice, draw_preparing
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
 from stippler.ui.panels.progress import LOW as WORK_LOW
-from stippler.ui.panels.progress import draw_work
+from stippler.ui.panels.progress import draw_work, progress_share
 from stippler.ui.panels.reference import draw_reference
 from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.status import Sight, draw_status
@@ -117,11 +120,13 @@ class Editor:
         self.lens_key = LensKey(self.look)
         self.menu = MenuBar()
         self.commands = self.popups.commands = commands_for(self._parts())
+        self.popups.field_commands = FieldCommands(self.gui.fields, self._show_if_panel)
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
         self._schedule, self._rate = Schedule(), FrameRate()
         self._ratio = 1.0
+        self._late: list[Event] = []  # commands for the next building of the panels
         self._preview: Preview | None = None
         self._last_s = self._kept_s = clock()
         self._may_have_changed = False  # since preferences were last looked at
@@ -229,7 +234,9 @@ class Editor:
     def _build(self, events: list[Event], dt_s: float) -> None:
         """Build the window's panels once and take events meanwhile; nothing is drawn yet."""
         self.gui.dress(self.look)
-        fed = [(event, self.gui.feed(event)) for event in events]
+        fed = [(event, False) for event in self._late]
+        self._late = [event for event in events if self._is_late(event)]
+        fed += [(one, self.gui.feed(one)) for one in events if one not in self._late]
         self.widgets = Widgets(
             self.look.theme,
             self.gui.fonts,
@@ -242,6 +249,14 @@ class Editor:
         failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
         if failure is not None:
             self._report(failure, "the window")
+
+    def _is_late(self, event: Event) -> bool:
+        """Whether a key is a command that counts after the number that is being typed."""
+        if not isinstance(event, KeyDown):
+            return False
+        return self.commands.owner(Key(event.key, event.mods)) is not None and (
+            self.gui.ends_number(event)
+        )
 
     def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
@@ -261,11 +276,13 @@ class Editor:
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
         self._guarded("the tools", lambda: self._draw_tools(tools))
-        self.panels.draw(self._guarded)
+        self.panels.draw(self._guarded, self.widgets, survey=self.popups.palette.is_asked)
         if not self.panels.is_in_front(SHAPE):
             self.shaping.let_go()
         if self.session.drawing is None and not self.session.busy:
             draw_invitation(self.widgets, self.commands, recent(), area)
+        if self.session.drawing is None and self.session.stage == PREPARE:
+            draw_preparing(self.widgets, progress_share(self.session), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
         self.popups.draw(self.widgets, self._guarded)
@@ -293,6 +310,10 @@ class Editor:
 
     def _draw_history(self) -> None:
         draw_history(self.widgets, self.session, self.painting, self.commands)
+
+    def _show_if_panel(self, name: str) -> None:
+        if name in self.panels.names:
+            self.show_panel(name)
 
     def show_panel(self, name: str) -> None:
         """Bring a panel to the front."""

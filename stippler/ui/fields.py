@@ -1,4 +1,4 @@
-"""What the panels' controls are called, so that the palette finds them; and what it wants of them."""
+"""What the panels' controls are called, that the palette may find them, and what it wants."""
 
 from __future__ import annotations
 

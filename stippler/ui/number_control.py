@@ -283,7 +283,7 @@ class _Caret:
     def _step(self, data: imgui.InputTextCallbackData, n: int) -> None:
         scale = self._about.scale
         try:
-            value = parse_number(data.buf, scale.unit, self._about.units)
+            value = parse_number(str(data.buf), scale.unit, self._about.units)
         except ParameterError:
             return
         value = scale.stepped(value, n, far=imgui.get_io().key_shift)
@@ -292,7 +292,7 @@ class _Caret:
 
 
 def _entered(widgets: Widgets, label: str, value: float, about: About, text: str) -> float:
-    """Return what a text tells, within the bounds; what is refused leaves the value, with a line."""
+    """Return what a text tells, within the bounds; what is refused leaves the value."""
     scale = about.scale
     try:
         typed = parse_number(text, scale.unit, about.units)

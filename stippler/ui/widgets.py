@@ -397,6 +397,31 @@ class Widgets:
         about = About(scale, geometric=logarithmic, bound=bound, units=units)
         return self._numbered(label, value, about, tip, spare)
 
+    def span(
+        self,
+        label: str,
+        value: tuple[float, float],
+        limits: tuple[float, float],
+        unit: str,
+        tip: str,
+    ) -> tuple[float, float]:
+        """Take two numbers, the second at least as large as the first, by dragging."""
+        self.label(label)
+        width = (imgui.get_content_region_avail().x - self.gap / 2) / 2
+        ends = list(value)
+        for k, (end, bounds, other) in enumerate(
+            (
+                ("from", (limits[0], value[1]), "which the other end bounds"),
+                ("to", (value[0], limits[1]), "which the other end bounds"),
+            )
+        ):
+            if k:
+                imgui.same_line(0.0, self.gap / 2)
+            imgui.set_next_item_width(width)
+            about = About(Scale(unit, None, 0.0, *bounds), geometric=True, bound=other)
+            ends[k] = draw_number(self, label, ends[k], about, tip, f"{label} {end}")
+        return ends[0], ends[1]
+
     def _numbered(
         self, label: str, value: float, about: About, tip: str, spare: float, name: str = ""
     ) -> float:

@@ -36,10 +36,10 @@ def main() -> None:
 def take(size: tuple[int, int], out: Path, only: str) -> None:
     """Take all pictures, and tell which labels had to be cut."""
     from stippler.app import App
-    from stippler.stippling.plan import Plan
+    from stippler.drawing.style import Style
     from stippler.ui.window.scripted_host import Host
 
-    app = App(Plan(n_dots=3000, iterations=3), tone="linear", width_mm=148.0, size=size,
+    app = App(Style(n_dots=3000, iterations=3), tone="linear", width_mm=148.0, size=size,
               offscreen=True)  # fmt: skip
     try:
         host = Host(app.window, app.editor, app.step)

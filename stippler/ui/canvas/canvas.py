@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from stippler.render.renderer import Renderer
     from stippler.render.scene import Scene
 
+_WAITING = 0.45  # opacity of the picture
 _RIM = 1.5  # the theme's pixels; each of the two lines of a lens's rim
 
 
@@ -198,6 +199,8 @@ def _frame(camera: Camera, size_px: Size, look: Look, session: Session) -> Frame
     from stippler.render.frame import FIXED, SELECTED, Frame
 
     theme, opacity = look.theme, look.reference_opacity if session.reference else 0.0
+    if session.reference and session.busy and not session.n_dots:
+        opacity = max(opacity, _WAITING)  # something to look at until there are dots
     return Frame(
         camera,
         size_px,

@@ -75,7 +75,7 @@ def _sides(
 
 
 def tab_scale(names: Sequence[str], padding: float, scale: float) -> float:
-    """Return how small tabs have to be written, that all names of a dock stand beside each other."""
+    """Return how small names on tabs have to be, that all of a dock stand beside each other."""
     rows: dict[int, list[str]] = {}
     widths: dict[int, float] = {}
     for name in names:

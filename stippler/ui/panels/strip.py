@@ -56,7 +56,7 @@ def draw_tools(
     shape: StripShape,
     show: Callable[[], None],
 ) -> None:
-    """Draw an icon for each tool; `show` brings the values of the one that is chosen to the front."""
+    """Draw an icon for each tool; `show` brings the values of the chosen one to the front."""
     viewport, scale = imgui.get_main_viewport(), widgets.scale
     imgui.set_next_window_pos(viewport.work_pos)
     imgui.set_next_window_size((shape.width, shape.height))

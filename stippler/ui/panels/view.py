@@ -49,7 +49,6 @@ def _draw_buttons(widgets: Widgets, commands: Commands) -> None:
 
 def _draw_turn(widgets: Widgets, view: View, commands: Commands) -> None:
     camera, side = view.camera, imgui.get_frame_height()
-    next_row = imgui.get_cursor_pos_y() + imgui.get_frame_height_with_spacing()
     degrees = round(math.degrees(camera.rotation_rad), 1)
     typed = widgets.length(
         "Turned",
@@ -61,11 +60,13 @@ def _draw_turn(widgets: Widgets, view: View, commands: Commands) -> None:
     )
     if typed != degrees:
         view.turn_to(math.radians(typed))
+    next_row = imgui.get_item_rect_max().y + imgui.get_style().item_spacing.y
     for name, icon in (("view.turn_left", ICON_LEFT), ("view.turn_right", ICON_RIGHT)):
         imgui.same_line(0.0, widgets.gap)
         if widgets.icon_button(commands[name].label, icon, f"{commands[name].hint}: by 15°."):
             commands[name].run()
-    imgui.set_cursor_pos_y(next_row)  # square buttons would leave a larger gap
+    left = imgui.get_cursor_screen_pos().x
+    imgui.set_cursor_screen_pos((left, next_row))  # square buttons would leave a larger gap
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + widgets.indent - widgets.margin)
     flip = commands["view.flip"]
     if widgets.check("Flipped", camera.flip, f"{flip.hint}: see the page in a mirror.") != (

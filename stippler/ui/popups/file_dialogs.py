@@ -23,6 +23,7 @@ OPENED = (
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # what the native dialogs need on Linux
 _LISTED = 400
 _WIDTH, _LIST_HEIGHT = 520.0, 240.0
+_LIST_SHARE = 0.34  # of the window's height, at most
 POPUP = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_title_bar
 
 
@@ -232,9 +233,11 @@ def _problem(own: _Own, path: Path) -> str:
 
 def center(width: float) -> None:
     """Put the next window in the middle."""
-    middle = imgui.get_main_viewport().get_center()
+    viewport = imgui.get_main_viewport()
+    middle, most = viewport.get_center(), (0.96 * viewport.size.x, 0.96 * viewport.size.y)
     imgui.set_next_window_pos((middle.x, middle.y), imgui.Cond_.always, (0.5, 0.5))
-    imgui.set_next_window_size((width, 0.0))
+    imgui.set_next_window_size((min(width, most[0]), 0.0))
+    imgui.set_next_window_size_constraints((0.0, 0.0), most)
 
 
 def _draw_verbs(widgets: Widgets, verb: str) -> tuple[bool, bool]:
@@ -255,7 +258,8 @@ def _draw_list(widgets: Widgets, own: _Own) -> Path | None:
     if own.listed is None or own.listed[0] != folder:
         own.listed = (folder, _contents(folder, own.endings))
     chosen = None
-    imgui.begin_child("##files", (0.0, _LIST_HEIGHT * widgets.scale), imgui.ChildFlags_.frame_style)
+    height = min(_LIST_HEIGHT * widgets.scale, _LIST_SHARE * imgui.get_main_viewport().size.y)
+    imgui.begin_child("##files", (0.0, height), imgui.ChildFlags_.frame_style)
     if folder.parent != folder and imgui.selectable("..", False)[0]:
         own.text = f"{folder.parent}/".replace("//", "/")
     for path in own.listed[1]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-from stippler.editor.events import Event, Gone, KeyDown
+from stippler.editor.events import Event, Gone, KeyDown, KeyUp
 from stippler.editor.keymap import is_modifier
 from stippler.ui import theme
 from stippler.ui.fields import Fields
@@ -22,6 +22,11 @@ _NAVIGATES = frozenset(
      "page_down", "home", "end", "-", ".", ",", *"0123456789")
 )  # fmt: skip
 """Keys that are a panel's while one of its controls has the focus of the keyboard."""
+_EDITS = frozenset(
+    ("a", "c", "v", "x", "y", "z", "left", "right", "home", "end", "backspace", "delete", "insert",
+     "left_control", "right_control", "left_alt", "right_alt", "left_shift", "right_shift")
+)  # fmt: skip
+"""Keys that, with Ctrl, edit the text of a field."""
 
 
 def _context() -> imgui.internal.Context:
@@ -53,6 +58,7 @@ class Gui:
         self._theme: Theme | None = None
         self._scale = 0.0
         self.escape_level = 0
+        self._holds_enter = False  # for a number that a chord has ended
         self.numbers = Numbers()
         self.fields = Fields()
         self._context = imgui.create_context()
@@ -128,6 +134,19 @@ class Gui:
         feed(event, self._window.ratio)
         return isinstance(event, KeyDown)
 
+    def ends_number(self, event: Event) -> bool:
+        """Whether a chord is to count after the number that is typed: that is entered, then."""
+        if not (isinstance(event, KeyDown) and self.numbers.open) or event.key in _EDITS:
+            return False
+        if not (event.mods.ctrl or event.mods.alt) or _context().open_popup_stack.size():
+            return False
+        if self.numbers.is_active:
+            feed(KeyDown("enter"), self._window.ratio)
+            self._holds_enter = True
+        else:
+            self.numbers.is_entered = True
+        return True
+
     def wants(self, event: KeyDown) -> bool:
         """Return whether a key is for panels: a field, a list or menu, or what has the focus."""
         context = _context()
@@ -159,6 +178,9 @@ class Gui:
         finally:
             imgui.end_frame()
         self.escape_level = 0
+        if self._holds_enter:
+            self._holds_enter = False
+            feed(KeyUp("enter"), self._window.ratio)
         imgui.render()
         return failure
 
