@@ -72,6 +72,8 @@ class Session:
         The open drawing; everything that is shown, painted on and written is in it.
     filling : stippler.stippling.fill.Filling
         How a page without a picture is filled next.
+    notes : tuple of str
+        How the open picture was read, as far as that is to be known.
     revision : int
         Grows whenever another drawing is open.
     exports : Exports
@@ -102,6 +104,7 @@ class Session:
         self.revision = 0
         self.filling = FillValues()
         self.messages = Messages(clock)
+        self.notes: tuple[str, ...] = ()
         self.exports = Exports(exporter, self.messages)
         self.keeping = Keeping(recovery, self.messages, clock)
         self._is_warm = is_warm
@@ -116,6 +119,13 @@ class Session:
         again = self._read is not None and self._read.path == path
         adjustment = self.adjustment if again else NEUTRAL
         self._begin(Source(path, self.tone, self.width_mm, adjustment))
+
+    def open_reference(self, path: Path) -> None:
+        """Open a picture only to draw after it by hand: no dots are made."""
+        self._supersede()
+        source = Source(path, self.tone, self.width_mm, NEUTRAL)
+        request = self._worker.start(lambda: work.read_only(source, is_warm=self._is_warm))
+        self._run(Opening(request, work.READ, source, self.style, by_hand=True))
 
     def open_drawing(self, path: Path) -> None:
         """Open a drawing that was saved."""
@@ -528,7 +538,7 @@ class Session:
     ) -> None:
         if self.document is not None:
             self.document.history.close()
-        self.document, self._read = document, source
+        self.document, self._read, self.notes = document, source, ()
         self.exports.begin_drawing(file, None if lost else document)
         self.keeping.open(document, self.name, file, lost)
         self.revision += 1

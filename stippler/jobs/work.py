@@ -79,6 +79,8 @@ class Work:
         Where an area is to have more dots.
     document : Document or None
         A drawing that was kept; nobody else holds it.
+    notes : tuple of str
+        What a person should know of how the picture was read.
     """
 
     stage: str
@@ -90,6 +92,7 @@ class Work:
     radius_mm: NDArray[np.float32] | None = None
     points_mm: NDArray[np.float64] | None = None
     document: Document | None = None
+    notes: tuple[str, ...] = ()
 
 
 def stipple_picture(
@@ -102,8 +105,8 @@ def stipple_picture(
     """
     if reference is None:
         yield Work(READ)
-        reference = _read(source)
-        yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
+        reference, notes = _read(source)
+        yield Work(READ, 1, 1, reference.adjusted(source.adjustment), notes=notes)
     reference = reference.adjusted(source.adjustment)
     if not is_warm():
         for n_ready, n_kernels in _prepared_kernels():
@@ -116,15 +119,27 @@ def stipple_picture(
     warm_up_brushes()
 
 
-def _read(source: Source) -> Reference:
-    """Read a picture: from the drawing that holds it, or from its file."""
+def read_only(source: Source, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Read a picture, to be drawn after by hand, and load everything that painting needs."""
+    yield Work(READ)
+    reference, notes = _read(source)
+    yield Work(READ, 1, 1, reference.adjusted(source.adjustment), notes=notes)
+    yield from make_ready(is_warm=is_warm)
+
+
+def _read(source: Source) -> tuple[Reference, tuple[str, ...]]:
+    """Read a picture: from the drawing that holds it, or from its file; tell what is to be said."""
     from stippler.drawing.reference import Reference
     from stippler.files.read.picture import picture_of_bytes, read_picture
 
     if source.data is None:
-        return read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+        notes: list[str] = []
+        reference = read_picture(
+            source.path, tone=source.tone, width_mm=source.width_mm, notes=notes
+        )
+        return reference, tuple(notes)
     picture = picture_of_bytes(source.data, source.path.name, source.tone)
-    return Reference.of(picture, source.width_mm)
+    return Reference.of(picture, source.width_mm), ()
 
 
 def make_ready(*, is_warm: Callable[[], bool]) -> Iterator[Work]:

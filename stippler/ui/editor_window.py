@@ -48,7 +48,7 @@ from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
 from stippler.ui.panels.progress import LOW as WORK_LOW
 from stippler.ui.panels.progress import draw_work, progress_share
-from stippler.ui.panels.reference import draw_reference
+from stippler.ui.panels.reference import draw_reference, draw_tones
 from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.strip import StripShape, draw_tools
@@ -293,6 +293,7 @@ class Editor:
         room = height - (WORK_LOW if is_low else WORK_HEIGHT) * scale
         imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * scale)))
         draw_picture(self.widgets, self.session, self.commands)
+        draw_tones(self.widgets, self.session, self.look, self.commands)
         self.widgets.rule()
         draw_dots(self.widgets, self.session)
         imgui.end_child()

@@ -54,6 +54,11 @@ class Fields:
         """All controls, in the order of their panels."""
         return list(self._known.values())
 
+    @property
+    def has_wishes(self) -> bool:
+        """Whether something is wished of the panel that is drawn."""
+        return any(panel == self.panel for panel, _ in self._wishes)
+
     def wish(self, field: Field, value: str | int) -> None:
         """Ask for a value: a text for a number (an empty one opens it), an option's place."""
         self._wishes[field.panel, field.label] = value

@@ -450,12 +450,16 @@ class Widgets:
         imgui.pop_style_var()
         self.caption(text or " ")
 
-    def more(self, name: str) -> bool:
+    def more(self, name: str, label: str = "More", tip: str = "What is seldom needed.") -> bool:
         """Draw a line that opens what is seldom needed; return whether it is open."""
         flags = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
-        is_open = imgui.tree_node_ex(f"More##{name}", flags)
+        if self.fields.is_survey:
+            return True
+        if self.fields.has_wishes:
+            imgui.set_next_item_open(True)
+        is_open = imgui.tree_node_ex(f"{label}##{name}", flags)
         self.note(f"More {name}")
-        self.tip("What is seldom needed.")
+        self.tip(tip)
         return is_open
 
     def rule(self) -> None:

@@ -106,12 +106,10 @@ class Panels:
             self._turn_focus()
 
     def _survey(self, guarded: Guarded, widgets: Widgets) -> None:
-        """Draw the panels that are not in front where nobody sees them."""
+        """Draw all panels where nobody sees them, with all that is folded away."""
         fields, scale = widgets.fields, widgets.scale
         fields.is_survey = True
         for name, draw in self._parts.items():
-            if name in self._in_front:
-                continue
             imgui.set_next_window_pos((-_AWAY, -_AWAY))
             imgui.set_next_window_size((320.0 * scale, _AWAY / 2))
             imgui.begin(f"##survey {name}", None, _UNSEEN)
