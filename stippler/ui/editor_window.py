@@ -33,10 +33,13 @@ from stippler.errors import StipplerError
 from stippler.jobs.work import PREPARE
 from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.area_overlay import AreaOverlay
-from stippler.ui.canvas.canvas import Canvas
+from stippler.ui.canvas.canvas import MAP_EVERY_S, Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
+from stippler.ui.canvas.navigator import camera_of, draw_navigator, size_of
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
+from stippler.ui.canvas.peek import Peek
 from stippler.ui.canvas.pen_samples import PenSamples
+from stippler.ui.canvas.rulers import draw_rulers
 from stippler.ui.field_commands import FieldCommands
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
@@ -117,6 +120,7 @@ class Editor:
             kept.closed,
         )
         self._layout = Layout(self.panels.names)
+        self.peek = Peek(self.look, session, self.painting)
         self.lens_key = LensKey(self.look)
         self.menu = MenuBar()
         self.commands = self.popups.commands = commands_for(self._parts())
@@ -148,6 +152,7 @@ class Editor:
             self.show_panel,
             self.reset_panels,
             self.panels.turn_focus,
+            self.peek,
         )
 
     # --- the loop's two halves --------------------------------------------------------------
@@ -267,10 +272,12 @@ class Editor:
         for event, for_panels in events:
             self._take_guarded(event, for_panels=for_panels)
         self.lens_key.let_pass()
+        self.peek.let_pass()
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
         self._preview = self._previewed()
         self.canvas.show(area, self.view.size_px, self._preview, self.view.camera, self._ratio)
+        self._guarded("what is beside the page", lambda: self._draw_beside(area))
         self._guarded("the brush's outline", lambda: self._draw_overlay(area))
         self._guarded("the lens", lambda: self._draw_lens(area))
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
@@ -342,6 +349,21 @@ class Editor:
             self._area_overlay.draw(document, choice, self.view, area, self._ratio)
         draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
 
+    def _draw_beside(self, area: Rect) -> None:
+        """Draw the picture's half, the rulers and the navigator."""
+        look, drawing = self.look, self.session.drawing
+        if drawing is None:
+            return
+        if look.split_shown and self.session.reference is not None:
+            self.canvas.show_half(area, self.view.size_px, self.gui.scale, look.theme)
+        if look.rulers_shown:
+            draw_rulers(self.widgets, self.view, area, self._ratio, self.pointer.at_px)
+        if look.navigator_shown:
+            page = drawing.page
+            size_px = size_of(page, area, self.gui.scale, self._ratio)
+            texture = self.canvas.map_texture(camera_of(page, size_px), size_px)
+            draw_navigator(self.widgets, self.view, page, texture, area, self._ratio)
+
     def _draw_lens(self, area: Rect) -> None:
         at_px, tip = self.pointer.at_px, self._overlay.tip
         if self.look.lens == "none" or at_px is None or self.session.drawing is None:
@@ -400,6 +422,7 @@ class Editor:
     def _take(self, event: Event, *, for_panels: bool) -> None:
         """Bring one event to whom it concerns."""
         self.lens_key.take(event)
+        self.peek.take(event)
         elsewhere = not self.hands.owns(event, over_panel=self.gui.wants_pointer)
         match event:
             case Scrolled() if self.lens_key.is_held:
@@ -477,6 +500,8 @@ class Editor:
             self._schedule.wake_at(now + message.left_s + 0.01)
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
+        if self.canvas.map_is_late:
+            self._schedule.wake_at(now + MAP_EVERY_S)
         self._keep_soon(now)
         if self.popups.dialogs.waiting:
             self._schedule.wake_at(now + _ANSWER_S)

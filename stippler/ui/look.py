@@ -23,6 +23,12 @@ class Look:
         Of the reference, 0..1; it is not drawn where `reference_shown` is False.
     marks_shown : bool
         Whether fixed and selected dots have colours of their own.
+    rulers_shown, navigator_shown : bool
+        Along the edges of the canvas; in its corner.
+    split_shown : bool
+        Whether the picture takes the left half of the canvas, the drawing the right.
+    peek : {"", "picture", "before"}
+        What is shown for as long as a key is held, instead of the drawing.
     lens : {"none", "reduce", "magnify"}
     reduction, magnification : int
         How many times smaller or larger than on the page the lens shows things.
@@ -36,6 +42,10 @@ class Look:
     marks_shown: bool = True
     reference_shown: bool = False
     opacity: float = 0.35
+    rulers_shown: bool = False
+    navigator_shown: bool = False
+    split_shown: bool = False
+    peek: str = ""
     lens: str = "none"
     reduction: int = 4
     magnification: int = 4
@@ -44,6 +54,7 @@ class Look:
     def begin(self) -> None:
         """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
         self.dots_shown = self.marks_shown = True
+        self.peek = ""
         self.lens = self.lens if self.lens in LENSES else "none"
         for name in ("reduction", "magnification"):
             kept = getattr(self, name)

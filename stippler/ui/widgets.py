@@ -199,14 +199,15 @@ class Widgets:
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         gap = 4.0 * self.scale
         size = imgui.calc_text_size(text, wrap_width=280.0 * self.scale)
-        bottom = imgui.get_main_viewport().size.y
+        right, bottom = imgui.get_main_viewport().size
+        left = max(min(low.x, right - size.x - 24.0 * self.scale), 0.0)
         is_low = high.y + gap + size.y + 14.0 * self.scale > bottom
         if beside:
             imgui.set_next_window_pos((high.x + gap, low.y))
         elif is_low:
-            imgui.set_next_window_pos((low.x, low.y - gap), imgui.Cond_.always, (0.0, 1.0))
+            imgui.set_next_window_pos((left, low.y - gap), imgui.Cond_.always, (0.0, 1.0))
         else:
-            imgui.set_next_window_pos((low.x, high.y + gap))
+            imgui.set_next_window_pos((left, high.y + gap))
         imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
         if imgui.begin_tooltip():
             imgui.push_text_wrap_pos(280.0 * self.scale)

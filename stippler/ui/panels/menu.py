@@ -13,8 +13,8 @@ from stippler.ui.widgets import Widgets
 _RECENT_AFTER = "file.open"
 _RULED = {
     "file.save", "file.export_as", "file.quit", "edit.preferences", "selection.delete",
-    "selection.fix", "selection.relax", "work.relax", "work.reset", "tool.larger", "view.theme",
-    "panel.reset",
+    "selection.fix", "selection.relax", "work.relax", "work.reset", "tool.larger", "view.peek",
+    "view.turn_left", "view.reduce", "view.theme", "panel.reset",
 }  # fmt: skip
 """Commands that a line stands above."""
 

@@ -31,6 +31,7 @@ def draw_view(widgets: Widgets, look: Look, view: View, commands: Commands) -> N
         commands["view.theme"].run()
     _draw_buttons(widgets, commands)
     _draw_turn(widgets, view, commands)
+    _draw_helps(widgets, look, commands)
     widgets.rule()
     _draw_lens(widgets, look, commands)
 
@@ -82,6 +83,21 @@ def _draw_turn(widgets: Widgets, view: View, commands: Commands) -> None:
         enabled=bool(camera.rotation_rad or camera.flip),
     ):
         upright.run()
+
+
+def _draw_helps(widgets: Widgets, look: Look, commands: Commands) -> None:
+    """Offer what stands around the page: rulers, navigator, the picture's half."""
+    for label, field, name in (
+        ("Rulers", "rulers_shown", "view.rulers"),
+        ("Navigator", "navigator_shown", "view.navigator"),
+        ("Picture beside the drawing", "split_shown", "view.split"),
+    ):
+        command = commands[name]
+        with widgets.off("" if command.enabled else "There is no picture open."):
+            value = widgets.check(label, getattr(look, field), command.explained)
+        setattr(look, field, value)
+        if label == "Rulers":
+            imgui.same_line(0.0, 2 * widgets.gap)
 
 
 def _draw_lens(widgets: Widgets, look: Look, commands: Commands) -> None:
