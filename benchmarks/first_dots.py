@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from benchmarks import part_of_page
 from benchmarks.figures import Figure, median_s
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
@@ -68,7 +69,7 @@ def figures(quick: bool = False) -> list[Figure]:
         large = np.repeat(np.repeat(density / np.float32(16.0), 4, 0), 4, 1)
         slow = median_s(lambda: _all(large), 3)
         results.insert(1, Figure("pulse-density, 16 megapixels, 60,000 dots", slow, "s", 1.5))
-    return results
+    return results + part_of_page.figures(repeats)
 
 
 def read_darkness(path: Path = _PICTURE) -> NDArray[np.float32]:

@@ -31,6 +31,12 @@ class Area:
         Id of its style.
     colour : str
         In the list of areas, as ``#rrggbb``.
+    locked : bool
+        Neither brushes nor work change its dots, and its outline stays.
+    hidden : bool
+        Its dots are neither drawn nor exported.
+    rank : int
+        Its place in the list: the largest is at the top; of equal ones the newest.
     """
 
     name: str
@@ -39,6 +45,7 @@ class Area:
     colour: str = "#808080"
     locked: bool = False
     hidden: bool = False
+    rank: int = 0
 
     def __post_init__(self) -> None:
         checked_colour(self.colour, "area")

@@ -12,6 +12,7 @@ from stippler.drawing import records
 from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.partition import Outline
 from stippler.drawing.planar.edits import Outcome, touched
 from stippler.drawing.planar.planar_map import Arc, PlanarMap
 from stippler.drawing.planar.slivers import LEAST_WIDTH_MM
@@ -121,7 +122,7 @@ def _set_areas(document: Document, before: PlanarMap, outcome: Outcome, style: i
         if k in areas:
             document.set(records.AREA, k, replace(areas[k], outline_mm=outline))
         else:
-            own = areas[0].style if style is None else style
+            own = areas[_came_from(before, outline)].style if style is None else style
             made = Area(f"area {k}", outline, own, _COLOURS[k % len(_COLOURS)])
             document.set(records.AREA, k, made)
     for k in outcome.gone:
@@ -130,6 +131,12 @@ def _set_areas(document: Document, before: PlanarMap, outcome: Outcome, style: i
     document.drawing.next_id[records.AREA] = max(
         outcome.map.next_area, document.drawing.first_free(records.AREA)
     )
+
+
+def _came_from(before: PlanarMap, outline: Outline) -> int:
+    """Return the area in whose place a new one is."""
+    point = outline.representative_point()
+    return max(int(before.area_at([(point.x, point.y)])[0]), 0)
 
 
 def _hand_over(document: Document, before: PlanarMap, after: PlanarMap) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
+from stippler.drawing.levels import levels_of
 from stippler.errors import ParameterError
 
 
@@ -35,6 +36,7 @@ class Picture:
     name: str = ""
     data: bytes | None = None
     _digest: list[str] = field(default_factory=list)
+    _levels: list[NDArray[np.uint16]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         values = self.darkness
@@ -44,6 +46,13 @@ class Picture:
         if not (low >= 0.0 and high <= 1.0):  # also catches NaN
             raise ParameterError("darkness has to lie in 0..1 and be finite", "reference")
         object.__setattr__(self, "darkness", _frozen(values))
+
+    @property
+    def levels(self) -> NDArray[np.uint16]:
+        """The darkness as 16-bit levels, read-only; made when first asked for, and once."""
+        if not self._levels:
+            self._levels.append(levels_of(self.darkness))
+        return self._levels[0]
 
     @property
     def digest(self) -> str:

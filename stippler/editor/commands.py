@@ -15,6 +15,7 @@ GROUPS = {
     "file": "File",
     "edit": "Edit",
     "selection": "Select",
+    "area": "Areas",
     "nodes": "Nodes",
     "work": "Dots",
     "tool": "Tool",

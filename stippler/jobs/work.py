@@ -197,13 +197,13 @@ def _relaxed(
         return
     import numpy as np
 
-    from stippler.stippling.density import DensityField
+    from stippler.stippling.picture_field import PictureField
     from stippler.stippling.relax import Relaxation
 
     density = None
     if weighted and reference is not None:
         # dots settle at the root of their weight
-        density = DensityField(np.square(reference.darkness), reference.pixel_mm)
+        density = PictureField.of(reference, [[np.square]])
     method = "lloyd" if spacing == "even" else spacing
     engine = Relaxation(dots.position_mm, parts, dots.fixed, shape_of_dot, density, method=method)
     for _ in range(iterations):

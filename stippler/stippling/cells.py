@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,13 +13,13 @@ from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_c
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.spacing import LEAST, MASS, NEIGHBOUR
+from stippler.kernels.cells.spacing import LEAST, MASS, NEIGHBOUR, UNIT
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.compartments import RECTANGLE, Compartments
-from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
+from stippler.stippling.field_sums import NO_FIELD, Weights, running_sums
 from stippler.stippling.spacing import Rules, Wanted
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 NO_OUTLINES = Outlines(np.empty((0, 2)), _NO_ROWS, _NO_ROWS, _NO_ROWS, np.zeros(1, np.int64))
 _NO_WANTS = np.empty((0, 3))
-LLOYD = Spacing(_NO_WANTS, _NO_WANTS, np.empty((0, 2)), np.empty(0), np.empty(0), np.empty(12))
+LLOYD = Spacing(_NO_WANTS, _NO_WANTS, np.empty((0, 2)), np.empty((0, 4)), np.empty(0), np.empty(11))
 """No rules: dots go to the centroids of their cells."""
 
 
@@ -64,7 +64,7 @@ class Cells:
         fixed: NDArray[np.bool_],
         compartment_of_dot: Rows,
         parts: Compartments,
-        density: DensityField | None,
+        density: Weights | None,
         over: float,
     ) -> None:
         n = len(xy)
@@ -78,7 +78,7 @@ class Cells:
         self.spacing = float(np.sqrt(parts.area.sum() / max(n, 1)))
         self._cell_start = np.zeros(self.grid.n_cells + 1, np.int32)
         self._crowd, self._tree_of_cell, self._node = _NO_ROWS, _NO_ROWS, _NO_CELLS
-        self._field = running_sums(density)
+        self._field = running_sums(density, parts)
         self._slack = np.inf
         self._keep = False
         self._star = np.zeros((n, LANES), np.int32)
@@ -89,17 +89,24 @@ class Cells:
         self.n_failed = n  # stars of the step before that did not hold
         self.rules, self._is_measured = LLOYD, True
 
-    def space_by(self, wanted: Wanted, radius_mm: Floats | None = None) -> None:
+    def space_by(self, wanted: Wanted | Sequence[Wanted], radius_mm: Floats | None = None) -> None:
         """Move dots by the rules of even spacing from now on; what is wanted goes by the field.
 
-        With radii given, by dot, density follows from these and the tone.
+        One thing is wanted of all, or one of each shape. With radii given, by dot, density follows
+        from these and the tone.
         """
-        n, n_parts = self.n, len(self.parts)
+        n = self.n
         self._sort(self._has_stars)
+        each = [wanted] if isinstance(wanted, Wanted) else list(wanted)
+        tables = [one.table() for one in each]
+        rows = np.array([len(table) for table in tables])
+        scale = np.array([one.scale for one in each])
+        part = np.column_stack([np.cumsum(rows) - rows, rows, scale, np.ones(len(each))])
+        of_shape = np.zeros_like(self.parts.shape_of) if len(each) == 1 else self.parts.shape_of
         self.rules = Spacing(
-            np.zeros((n, 3)), np.zeros((n, 3)), wanted.table(), np.ones(n_parts),
+            np.zeros((n, 3)), np.zeros((n, 3)), np.concatenate(tables), part[of_shape],
             np.empty(0) if radius_mm is None else np.asarray(radius_mm, np.float64)[self.order],
-            Rules().array(wanted.scale),
+            Rules().array(),
         )  # fmt: skip
         self._is_measured = False
 
@@ -119,11 +126,13 @@ class Cells:
         unit = np.divide(count, mass, out=np.ones(n_parts), where=mass > 0)
         found[:, MASS] *= unit[owner]
         found[:, NEIGHBOUR] /= np.sqrt(unit[owner])
-        self.rules, self._is_measured = self.rules._replace(unit=unit), True
+        of_part = self.rules.of_part.copy()
+        of_part[:, UNIT] = unit
+        self.rules, self._is_measured = self.rules._replace(of_part=of_part), True
 
     def set_rules(self, rules: Rules) -> None:
         """Change how strictly dots are spaced."""
-        self.rules = self.rules._replace(rule=rules.array(float(self.rules.rule[-1])))
+        self.rules = self.rules._replace(rule=rules.array())
 
     @property
     def keeps_stars(self) -> bool:
@@ -238,7 +247,7 @@ class Cells:
         return Outlines(corner, beyond, following, n_sides, used), cells[row_of_dot]
 
     def _field_for(self, weighted: bool) -> Field:
-        return self._field if weighted else running_sums(None)
+        return self._field if weighted else NO_FIELD
 
     def _new_moves(self) -> Moves:
         n = self.n

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing.validation import floats
 from stippler.errors import ParameterError
-from stippler.kernels.cells.field import sum_rows
-from stippler.kernels.cells.tables import Field
-from stippler.kernels.machine.pool import parallel_for
 
 _DENSEST = 1e30  # sums of the kernels' float32 go no further
 
@@ -80,18 +77,3 @@ class DensityField:
             raise ParameterError("a density is a 2-d field with at least one pixel", "density")
         h, w = values.shape
         return cls(values, (float(x1 - x0) / w, float(y1 - y0) / h), (float(x0), float(y0)))
-
-
-def running_sums(density: DensityField | None) -> Field:
-    """Return running sums of mass and moment along rows, see `stippler.kernels.cells.field`.
-
-    Without a density they are empty.
-    """
-    if density is None:
-        return Field(np.empty((0, 0, 2)), np.array([0.0, 0.0, 1.0, 1.0]))
-    h, w = density.values.shape
-    sums = np.empty((h, w + 1, 2))
-    values = np.ascontiguousarray(density.values, np.float32)
-    parallel_for(sum_rows, h, values, sums, grain=64)
-    sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
-    return Field(sums, np.array([*density.origin_mm, *sides]))

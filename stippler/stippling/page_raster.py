@@ -22,15 +22,12 @@ from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
 from stippler.stippling.tone import DotRule, rule_for
+from stippler.stippling.window import Window
 
 _BLEED = 3.0  # mean spacings
 _LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
 _MIN_DOTS = 500  # below this a bleed is not worth it
-_PIXELS_PER_DOT = 60  # blocks of a reference that is finer are averaged
-_MIN_PIXELS, _MIN_PIXELS_AT_EDGE = 600_000, 2_500_000
-_INKED_EDGE = 0.1  # mean darkness from which on the picture runs to the page's edge
 _LEVELS = 65_535
-_DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
 _MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
 _FARTHEST = 2.0  # radii beyond the edge from which a dot is drawn back to it, at most
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
@@ -79,8 +76,8 @@ class PageRaster:
                 f"about {guess:,} dots of this size would be needed", "size range",
                 f"allow larger ones; {MAX_DOTS:,} can be drawn",
             )  # fmt: skip
-        darkness, scale = at_resolution(reference.darkness, guess)
-        pixel_mm = reference.pixel_mm * scale
+        window = Window.of_page(reference, guess)
+        darkness, pixel_mm = window.darkness, window.pixel_mm
         size_px = None
         if size_range_mm is not None:
             size_px = (size_range_mm[0] / pixel_mm, size_range_mm[1] / pixel_mm)
@@ -97,7 +94,9 @@ class PageRaster:
             rule = rule_for(darkness, n_dots, None, border, faintest=faintest)
         elif share < 1.0:
             rule = replace(rule, thin=share * rule.thin)
-        return cls(darkness, bleed, rule, pixel_mm, (width, height), max(1, round(1.0 / scale)))
+        return cls(
+            darkness, bleed, rule, pixel_mm, (width, height), max(1, round(1.0 / window.scale))
+        )
 
     def density(self) -> NDArray[np.float32]:
         """Dots per square pixel, bleed included; white stays exactly 0."""
@@ -236,32 +235,3 @@ def _number_for(reference: Reference, size_range_mm: tuple[float, float] | None)
     mean_area = math.pi * (0.5 * (size_range_mm[0] + size_range_mm[1])) ** 2
     ink = float(reference.darkness.mean(dtype=np.float64))
     return max(1, int(ink * reference.width_mm * reference.height_mm / mean_area))
-
-
-def at_resolution(darkness: NDArray[np.float32], n_dots: int) -> tuple[NDArray[np.float32], float]:
-    """Average blocks of a picture finer than its dots can show; divide pixels larger than dots.
-
-    Returns the field and the side of its pixels in those of the picture.
-    """
-    h, w = darkness.shape
-    per_pixel = n_dots / darkness.size
-    if per_pixel > _DOTS_PER_PIXEL:
-        k = math.ceil(math.sqrt(per_pixel / _DOTS_PER_PIXEL))
-        return _frozen(np.repeat(np.repeat(darkness, k, 0), k, 1)), 1.0 / k
-    # the ink along a trimmed edge is evened by pixels, and would be too light with few
-    runs_out = float(_border(darkness).mean()) > _INKED_EDGE
-    least = _MIN_PIXELS_AT_EDGE if runs_out else _MIN_PIXELS
-    k = int(math.sqrt(darkness.size / max(least, _PIXELS_PER_DOT * n_dots)))
-    if k < 2:
-        return darkness, 1.0
-    rows, columns = np.arange(0, h, k), np.arange(0, w, k)
-    sums = np.add.reduceat(darkness, rows, axis=0, dtype=np.float32)
-    sums = np.add.reduceat(sums, columns, axis=1)
-    sums /= np.diff(rows, append=h).astype(np.float32)[:, None]
-    sums /= np.diff(columns, append=w).astype(np.float32)
-    return _frozen(np.minimum(sums, np.float32(1.0))), float(k)
-
-
-def _frozen(field: NDArray[np.float32]) -> NDArray[np.float32]:
-    field.flags.writeable = False  # as a reference's own field: kernels compile for one kind
-    return field

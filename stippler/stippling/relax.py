@@ -17,10 +17,12 @@ from stippler.stippling.cells import Cells, Redirect
 from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.density import Density, DensityField
+from stippler.stippling.field_sums import Weights
+from stippler.stippling.picture_field import PictureField
 from stippler.stippling.spacing import Rules, Wanted, rules_after
 from stippler.stippling.tessellation import Tessellation
 
-__all__ = ["DensityField", "Relaxation", "RunReport", "StepReport", "relax"]
+__all__ = ["DensityField", "PictureField", "Relaxation", "RunReport", "StepReport", "relax"]
 
 AT_REST = 0.005
 """Largest move of a step, in mean spacings, at which dots spaced by the rules have come to rest."""
@@ -70,15 +72,15 @@ class Relaxation:
         Dots that shape the cells of others and never move.
     compartment_of_dot : (n,) array_like of int, optional
         Index into the list of compartments; found by position if left out.
-    density : DensityField, optional
-        Weight of the page; a dot moves to the centre of mass of its cell. A dot whose cell has
-        no mass keeps its place.
+    density : DensityField or PictureField, optional
+        Weight of the page, or of each shape by itself; a dot moves to the centre of mass of its
+        cell. A dot whose cell has no mass keeps its place.
     over_relaxation : float
         The share of the way to the centroid that a dot goes, above 0 and below 2.
     method : {"lloyd", "even", "delaunay-mean", "springs"}
         "even" spaces dots by rules that leave no rows and come to rest, in proportion to the
         density; the last two are the paper's comparisons.
-    wanted : Wanted, optional
+    wanted : Wanted or one for each shape, optional
         How dense and how large "even" has dots to be by levels of the density.
     radius_mm : (n,) array_like, optional
         The dots' own sizes, by which "even" spaces them then.
@@ -101,11 +103,11 @@ class Relaxation:
         polygon: Shape | Sequence[Shape] | ArrayLike,
         fixed: ArrayLike | None = None,
         compartment_of_dot: ArrayLike | None = None,
-        density: DensityField | None = None,
+        density: Weights | None = None,
         over_relaxation: float = 1.0,
         *,
         method: str = "lloyd",
-        wanted: Wanted | None = None,
+        wanted: Wanted | Sequence[Wanted] | None = None,
         radius_mm: ArrayLike | None = None,
     ) -> None:
         if method not in SPACINGS:
@@ -133,8 +135,7 @@ class Relaxation:
         self._n_done = 0
         if method == "even":
             if wanted is None:
-                values = None if density is None else density.values
-                wanted = Wanted.uniform() if values is None else Wanted.in_proportion(values)
+                wanted = _in_proportion(density, int(self._parts.shape_of[-1]) + 1)
             own = None if radius_mm is None else _checked(radius_mm, n, np.float64, "radius", 0)
             self._cells.space_by(wanted, own)
 
@@ -279,7 +280,7 @@ def relax(
     polygon: Shape | Sequence[Shape] | ArrayLike,
     iterations: int = 20,
     fixed: ArrayLike | None = None,
-    density: ArrayLike | Density | DensityField | None = None,
+    density: ArrayLike | Density | Weights | None = None,
     *,
     method: str = "lloyd",
     compartment_of_dot: ArrayLike | None = None,
@@ -297,7 +298,7 @@ def relax(
     iterations : int
     fixed : (n,) array_like of bool, optional
         Dots that never move.
-    density : (h, w) array_like, callable or DensityField, optional
+    density : (h, w) array_like, callable, DensityField or PictureField, optional
         Weight: an array over the polygon's bounding box, row 0 at its least y, or a function
         of arrays x and y.
     method : {"lloyd", "even", "delaunay-mean", "springs"}
@@ -320,7 +321,7 @@ def relax(
     tolerance = floats(tolerance_mm, "tolerance")
     if tolerance.ndim or not tolerance >= 0.0:
         raise ParameterError(f"{tolerance_mm} is no length", "tolerance", "give 0 or more")
-    if density is not None and not isinstance(density, DensityField):
+    if density is not None and not isinstance(density, DensityField | PictureField):
         boxes = Compartments.of(polygon).box
         box = np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
         density = DensityField.over_box(density, box, np.size(points) // 2)
@@ -329,6 +330,17 @@ def relax(
     )
     engine.run(int(iterations), float(tolerance))
     return np.array(engine.points)
+
+
+def _in_proportion(density: Weights | None, n_shapes: int) -> Wanted | list[Wanted]:
+    if density is None:
+        return Wanted.uniform()
+    if isinstance(density, DensityField):
+        return Wanted.in_proportion(density.values)
+    each = [Wanted.in_proportion(table) for table in density.tables]
+    if density.table_of_shape is None:
+        return each[0]
+    return [each[k] for k in density.table_of_shape[:n_shapes]]
 
 
 def _as_question(cancel: Cancel) -> Callable[[], bool] | None:

@@ -21,6 +21,7 @@ from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import AT_REST, Relaxation
 from stippler.stippling.spacing import AT_LAST, TO_INK, Wanted
 from stippler.stippling.tone import DotRule, ink_for
+from stippler.stippling.transport import with_long_waves_gone
 
 _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solved
 _LEVELS = 65
@@ -49,6 +50,7 @@ def relaxed_all(
         Sizes for these places; given once, at the end, where any were solved.
     """
     if reference is None or not len(position_mm):
+        position_mm = with_long_waves_gone(position_mm, outlines, outline_of_dot, fixed)
         engine = Relaxation(position_mm, outlines, fixed, outline_of_dot, method="even")
         for _ in range(steps):
             report = engine.step()
@@ -58,6 +60,10 @@ def relaxed_all(
         return
     sheet = _Sheet(position_mm, radius_mm, reference)
     still = fixed | sheet.beside(position_mm)
+    before_mm = position_mm
+    position_mm = with_long_waves_gone(
+        position_mm, outlines, outline_of_dot, still, sheet.density_at
+    )
     field = DensityField(sheet.raster.darkness, sheet.raster.pixel_mm)
 
     def engine_for(still: NDArray[np.bool_]) -> Relaxation:
@@ -70,6 +76,7 @@ def relaxed_all(
     engine.set_rules(AT_LAST)
     engine.step()
     awake = _around_restless(position_mm, engine.points, ~still)
+    awake |= (position_mm != before_mm).any(axis=1)
     if not awake.any():
         yield position_mm, None
         return
@@ -132,6 +139,15 @@ class _Sheet:
         spacing = np.sqrt(size.prod() / len(position_mm))
         near = np.minimum(position_mm, size - position_mm).min(axis=1) < _BESIDE * spacing
         return np.asarray(near, np.bool_)
+
+    def density_at(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how dense dots are to be at some places, in any unit; none beyond the page."""
+        px = position_mm / self.raster.pixel_mm
+        beyond = (px < 0.0) | (px >= np.array(self.raster.darkness.shape[::-1]))
+        inside = np.asarray(~beyond.any(axis=1))
+        level = self.raster.darkness_under(np.where(inside[:, None], px, 0.0)) * self.wanted.scale
+        per_area = np.interp(level, np.arange(len(self.wanted.per_area)), self.wanted.per_area)
+        return np.where(inside, per_area, 0.0)
 
     def solved_at(self, position_mm: NDArray[np.float64]) -> NDArray[np.float32] | None:
         """Return sizes for the tone at these places; those not solved before stay."""

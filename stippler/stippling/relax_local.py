@@ -16,8 +16,8 @@ from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.cells import CORNER_CAP, LLOYD, NO_OUTLINES
 from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
-from stippler.stippling.density import DensityField, running_sums
 from stippler.stippling.dotgrid import DotGrid
+from stippler.stippling.field_sums import Weights, running_sums
 
 _NO_FLAGS = np.empty(0, np.uint8)
 _NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
@@ -47,7 +47,7 @@ class LocalRelaxation:
         points: ArrayLike,
         polygon: Shape | Sequence[Shape] | ArrayLike,
         compartment_of_dot: ArrayLike | None = None,
-        density: DensityField | None = None,
+        density: Weights | None = None,
         movable: ArrayLike | None = None,
     ) -> None:
         xy = np.array(points, np.float64).reshape(-1, 2)
@@ -56,7 +56,7 @@ class LocalRelaxation:
         fixed = np.zeros(len(xy), np.bool_) if movable is None else ~np.asarray(movable, np.bool_)
         part_coinciding(xy, self._compartment, self._parts, fixed)
         self._slot_of_dot = np.full(len(xy), -1, np.int32)
-        self._field = running_sums(density)
+        self._field = running_sums(density, self._parts)
         self._build(np.arange(len(xy), dtype=np.int32), xy)
 
     def __len__(self) -> int:

@@ -12,6 +12,7 @@ from stippler.stippling.density import DensityField
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.spacing import LLOYD, TO_INK, Rules, Wanted, rules_after
+from stippler.stippling.transport import evened_out
 
 _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
@@ -74,7 +75,9 @@ def _evenly(
     watched: bool,
 ) -> Steps:
     field = raster.ink_field()
-    if n_done == 0 and style.first_dots != "random":
+    if n_done == 0 and style.first_dots == "random":
+        at = evened_out(at, raster.density(), raster.pixel_mm, tuple(outline_mm[0]), fixed)
+    elif n_done == 0:
         at = _with_order_broken(at, raster, style.seed, fixed)
     engine = Relaxation(
         np.clip(at, outline_mm[0], outline_mm[2]), outline_mm, fixed, density=field,

@@ -50,12 +50,9 @@ class Rules:
     low: float = 0.1
     least: float = 0.0
 
-    def array(self, scale: float) -> NDArray[np.float64]:
-        """Return what kernels read; `scale` turns a mean of the field into a level."""
-        return np.array(
-            [self.near, self.base, self.slope, self.cap, self.hole, self.narrow, self.level,
-             self.pull, self.gain, self.low, self.least, scale]
-        )  # fmt: skip
+    def array(self) -> NDArray[np.float64]:
+        """Return what kernels read."""
+        return np.array(astuple(self))
 
 
 RULES = Rules()
@@ -107,7 +104,7 @@ class Wanted:
 
     @classmethod
     def in_proportion(cls, values: NDArray[np.floating]) -> Wanted:
-        """Want dots in proportion to a field."""
+        """Want dots in proportion to a field that has these values."""
         top = max(float(values.max()), 1e-30)
         return cls(np.array([0.0, top]), np.zeros(2), top)
 

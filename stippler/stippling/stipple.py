@@ -222,7 +222,8 @@ def pulse_density(
     style = Style(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
     reference = Reference(darkness, float(darkness.shape[1]))
     if area is not None:
-        return pulses_inside(reference.darkness, style, area)
+        found = pulses_inside(reference, style, area)
+        return found.position_mm, found.radius_mm
     raster = raster_for(reference, style)
     *_, (_, points) = _first_dots(raster, style)
     points = raster.onto_ink(raster.trim(points, None))

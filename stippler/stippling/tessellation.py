@@ -14,7 +14,7 @@ from stippler.stippling.compartments import Compartments, Shape
 
 if TYPE_CHECKING:
     from stippler.stippling.cells import Cells
-    from stippler.stippling.density import DensityField
+    from stippler.stippling.field_sums import Weights
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int32]
@@ -68,7 +68,7 @@ class Tessellation:
         points: ArrayLike,
         polygon: Shape | Sequence[Shape] | ArrayLike,
         compartment_of_dot: ArrayLike | None = None,
-        density: DensityField | None = None,
+        density: Weights | None = None,
     ) -> Tessellation:
         """Compute the cells of dots; parameters and errors as for `Relaxation`."""
         from stippler.stippling.relax import Relaxation

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from imgui_bundle import imgui
 
 from stippler.drawing.preview import Preview
+from stippler.editor.area_acts import AreaActs
 from stippler.editor.batches import parts_of
 from stippler.editor.commands import Key
 from stippler.editor.events import (
@@ -106,6 +107,7 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
@@ -143,6 +145,7 @@ class Editor:
             self.session,
             self.painting,
             Selecting(self.session, self.painting),
+            self.area_acts,
             self.pointer,
             self.view,
             self.look,

@@ -169,6 +169,25 @@ def _nodes(p: Pen) -> None:
     p.ring(0.62, 0.86, 0.09)
 
 
+def _area(p: Pen) -> None:
+    p.line((0.14, 0.4), (0.46, 0.12), (0.88, 0.34), (0.74, 0.82), (0.24, 0.86), (0.14, 0.4))
+    for x, y in ((0.46, 0.12), (0.88, 0.34), (0.74, 0.82), (0.24, 0.86), (0.14, 0.4)):
+        p.dot(x, y, 0.08)
+
+
+def _knife(p: Pen) -> None:
+    p.line((0.12, 0.9), (0.9, 0.12))
+    p.line((0.1, 0.5), (0.1, 0.1), (0.5, 0.1))
+    p.line((0.5, 0.9), (0.9, 0.9), (0.9, 0.5))
+
+
+def _bucket(p: Pen) -> None:
+    p.line((0.2, 0.5), (0.5, 0.16), (0.82, 0.48), (0.48, 0.84), (0.2, 0.5))
+    p.draw.add_triangle_filled(p.at(0.2, 0.5), p.at(0.82, 0.5), p.at(0.48, 0.84), p.colour)
+    p.dot(0.88, 0.74, 0.08)
+    p.line((0.38, 0.06), (0.5, 0.16))
+
+
 _ICONS: dict[str, Callable[[Pen], None]] = {
     "": _none,
     "add": _add,
@@ -187,6 +206,9 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "comb": _comb,
     "select": _select,
     "nodes": _nodes,
+    "area": _area,
+    "knife": _knife,
+    "bucket": _bucket,
 }
 
 

@@ -10,6 +10,7 @@ from shapely.geometry import MultiPolygon, Point, Polygon, box
 
 from stippler.analysis.spacing import measure_spacing
 from stippler.analysis.spectrum import measure_spectrum
+from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.halftone import (
@@ -93,7 +94,8 @@ def test_dots_come_progressively_and_grow_only():
 
 def dots_in(area, n, side, start="top"):
     style = Style(n_dots=n, start=start)
-    return pulses_inside(np.full((side, side), 0.4, np.float32), style, area)[0]
+    grey = Reference(np.full((side, side), 0.4, np.float32), side)
+    return pulses_inside(grey, style, area).position_mm
 
 
 @pytest.mark.parametrize("start", STARTS)

@@ -23,8 +23,11 @@ from stippler.editor.events import (
     Released,
 )
 from stippler.editor.messages import WARNING
+from stippler.editor.tools.area_tool import AreaTool
 from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
+from stippler.editor.tools.bucket_tool import BucketTool
+from stippler.editor.tools.knife_tool import KnifeTool
 from stippler.editor.tools.node_tool import NodeTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
@@ -44,7 +47,8 @@ _VALUES_FILE = "tools.json"
 def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
     """Make every tool, in the order of the strip; a new one is a line here."""
     brushes = (BrushTool(kind, shelf) for kind in KINDS)
-    return (*brushes, SelectTool(), NodeTool())
+    areas = (AreaTool(), KnifeTool(), BucketTool(), NodeTool())
+    return (*brushes, SelectTool(), *areas)
 
 
 class Toolbox:

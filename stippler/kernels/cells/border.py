@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from stippler.kernels.cells.clip import outline_piece
-from stippler.kernels.cells.field import integrate_edge
+from stippler.kernels.cells.field import COLUMNS, FIRST, ROWS, integrate_edge
 from stippler.kernels.cells.tables import F8, I4, Border, Field, Pads, Spot
 from stippler.kernels.cells.voronoi import cut_cell, reach2_of_cell
 from stippler.kernels.machine.jit import ZERO, inline, inner
@@ -134,27 +134,31 @@ def sum_area(out: F8, n: int) -> tuple[float, float, float, float]:
 
 
 @inner
-def sum_field(out: F8, n: int, x: float, y: float, field: Field) -> tuple[float, float, float]:
-    """Return the field's mass over the outline and its first moments about the dot.
+def sum_field(
+    out: F8, n: int, x: float, y: float, c: int, field: Field
+) -> tuple[float, float, float]:
+    """Return the mass over an outline in compartment c, and its first moments about the dot.
 
     A mass that rounding alone could make is none: its moments would lead anywhere.
     """
-    frame = field.frame
-    ku, kv = 1.0 / frame[2], 1.0 / frame[3]
-    px, py = (x - frame[0]) * ku, (y - frame[1]) * kv
+    frame, window = field.frame, field.window
+    ku, kv = 1.0 / frame[c, 2], 1.0 / frame[c, 3]
+    px, py = (x - frame[c, 0]) * ku, (y - frame[c, 1]) * kv
+    start, h, w = window[c, FIRST], window[c, ROWS], window[c, COLUMNS]
     total = mu = mv = gross = 0.0
     for s in range(n):
         m, mx, my = integrate_edge(
-            field.sums, px, py, out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv
-        )
+            field.sums, start, h, w, px, py,
+            out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv,
+        )  # fmt: skip
         total += m
         gross += abs(m)
         mu += mx
         mv += my
     if total <= _ROUNDING * gross:
         return 0.0, 0.0, 0.0
-    size = frame[2] * frame[3]
-    return total * size, mu * size * frame[2], mv * size * frame[3]
+    size = frame[c, 2] * frame[c, 3]
+    return total * size, mu * size * frame[c, 2], mv * size * frame[c, 3]
 
 
 @inline

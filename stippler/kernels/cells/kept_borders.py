@@ -277,7 +277,7 @@ def move_by_lines(
     if len(field.sums) or not is_convex:
         outline_of_lanes(U, V, m, out)
     if len(field.sums):
-        mass, du, dv = sum_field(out, m, x, y, field)
+        mass, du, dv = sum_field(out, m, x, y, dots.compartment[i], field)
     if mass > 0.0 and not dots.fixed[i]:
         du, dv = du / mass, dv / mass
         if is_convex:

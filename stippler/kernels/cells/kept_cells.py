@@ -129,7 +129,7 @@ def _way_to_centroid(
     area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
     if len(field.sums):
         outline_of_lanes(U, V, m, out)
-        area, du, dv = sum_field(out, m, x, y, field)
+        area, du, dv = sum_field(out, m, x, y, dots.compartment[i], field)
     if not area > 0.0:
         return 0.0, 0.0, 0.0
     du, dv = du / area, dv / area

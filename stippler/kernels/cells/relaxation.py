@@ -162,7 +162,7 @@ def _relax(
             continue
         if len(outlines.n_sides):
             _put_outline(U, V, N, m, is_packed, n, grid.whole[c, 4], w, pads, outlines)
-        mass, du, dv = _centroid_of(U, V, m, is_packed, n, field, spot, i, cells, pads)
+        mass, du, dv = _centroid_of(U, V, m, is_packed, n, dots, field, spot, i, cells, pads)
         if len(spacing.table):
             du, dv = _way_by_rules(
                 U, V, N, m, is_packed, n, dots, spot, i, c, mass, du, dv, spacing, pads
@@ -257,8 +257,8 @@ def _cell_of_dot(
 
 @merged
 def _centroid_of(
-    U: Any, V: Any, m: int, is_packed: bool, n: int, field: Field, spot: Spot, i: int, cells: F8,
-    pads: Pads,
+    U: Any, V: Any, m: int, is_packed: bool, n: int, dots: Dots, field: Field, spot: Spot, i: int,
+    cells: F8, pads: Pads,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Return a cell's mass and the way to its (weighted) centroid; 0 without mass."""
     is_whole = n == 0
@@ -278,7 +278,7 @@ def _centroid_of(
             if len(cells):
                 cells[i, 3], cells[i, 4], cells[i, 5] = mass, second, reach2_of_outline(pads.out, n)
         if len(field.sums):
-            mass, du, dv = sum_field(pads.out, n, spot.x, spot.y, field)
+            mass, du, dv = sum_field(pads.out, n, spot.x, spot.y, dots.compartment[i], field)
     if mass > 0.0:
         du, dv = du / mass, dv / mass
     else:

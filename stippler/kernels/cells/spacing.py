@@ -22,8 +22,11 @@ from stippler.kernels.cells.tables import F8, Dots, Spacing
 from stippler.kernels.machine.jit import inline, inner
 from stippler.kernels.machine.simd import get
 
-NEAR, BASE, SLOPE, CAP, HOLE, NARROW, LEVEL, PULL, GAIN, LOW, LEAST, SCALE = range(12)
+NEAR, BASE, SLOPE, CAP, HOLE, NARROW, LEVEL, PULL, GAIN, LOW, LEAST = range(11)
 """Places in `Spacing.rule`."""
+
+FIRST, ROWS, SCALE, UNIT = range(4)
+"""Columns of `Spacing.of_part`."""
 
 WIDE, WIDEST = 0.85, 1.05
 """Diameters of dots, in hexagonal spacings, between which holes get narrower."""
@@ -44,19 +47,21 @@ def ask(spacing: Spacing, i: int, c: int, area: float, mass: float) -> None:
 
     The distance is that of neighbours in the hexagonal grid of the density.
     """
-    table = spacing.table
-    per_area, radius = table[0, 0], table[0, 1]
-    if len(table) > 1:
-        at = min(max(mass / max(area, _FAR) * spacing.rule[SCALE], 0.0), len(table) - 1.0)
-        k = min(int(at), len(table) - 2)
+    table, part = spacing.table, spacing.of_part
+    first, rows = int(part[c, FIRST]), part[c, ROWS]
+    per_area, radius = table[first, 0], table[first, 1]
+    if rows > 1.0:
+        at = min(max(mass / max(area, _FAR) * part[c, SCALE], 0.0), rows - 1.0)
+        k = int(min(at, rows - 2.0))
         t = at - k
+        k += first
         per_area = table[k, 0] + t * (table[k + 1, 0] - table[k, 0])
         radius = table[k, 1] + t * (table[k + 1, 1] - table[k, 1])
     if len(spacing.radius):
         own = spacing.radius[i]
         per_area *= (radius / own) * (radius / own)
         radius = own
-    per_area *= spacing.unit[c]
+    per_area *= part[c, UNIT]
     spacing.found[i, MASS] = area * per_area
     spacing.found[i, NEIGHBOUR] = math.sqrt(HEXAGONAL / max(per_area, _FAR))
     spacing.found[i, RADIUS] = radius

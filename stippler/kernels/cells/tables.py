@@ -52,11 +52,13 @@ class Border(NamedTuple):
 class Field(NamedTuple):
     """Running sums of the density, see `field`; empty for a uniform one.
 
-    `frame` holds its origin and the sides of a pixel.
+    Each compartment has a window of it: `window` holds where its sums begin, its rows and columns;
+    `frame` its origin and the sides of a pixel. Compartments may share one.
     """
 
     sums: F8
     frame: F8
+    window: NDArray[np.int64]
 
 
 class Moves(NamedTuple):
@@ -87,14 +89,15 @@ class Spacing(NamedTuple):
     """What the rules of even spacing go by, see `spacing`; an empty `table` is Lloyd alone.
 
     `wants` holds by row what each dot wanted in the step before, `found` what it wants now.
-    `table` gives dots per area and radius by levels of the field's mean, one row without a field;
-    `unit` multiplies the former, by compartment; `radius` holds dots' own by row, or is empty.
+    `table` gives dots per area and radius by levels of the field's mean, one row without a field.
+    `of_part` says by compartment where its rows begin, how many there are, what turns a mean into
+    a level, and what dots per area are multiplied by. `radius` holds dots' own by row, or is empty.
     """
 
     wants: F8
     found: F8
     table: F8
-    unit: F8
+    of_part: F8
     radius: F8
     rule: F8
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from stippler.editor.area_acts import AreaActs
 from stippler.editor.painting import Painting
 from stippler.editor.pointer import Pointer
 from stippler.editor.selecting import Selecting
@@ -38,6 +39,7 @@ class Parts:
     session: Session
     painting: Painting
     selecting: Selecting
+    area_acts: AreaActs
     pointer: Pointer
     view: View
     look: Look

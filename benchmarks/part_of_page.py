@@ -1,0 +1,56 @@
+"""What the dots of a small area cost on a large picture: ``stippler bench --only first_dots``."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+
+from benchmarks.figures import Figure, median_s
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from stippler.stippling.halftone_area import pulses_inside
+from stippler.stippling.picture_field import PictureField
+from stippler.stippling.radii import solve_radii
+from stippler.stippling.relax import Relaxation
+from stippler.stippling.spacing import TO_INK, Wanted
+
+_N_DOTS, _STEPS, _WIDTH_MM = 2_000, 20, 200.0
+
+
+def figures(repeats: int) -> list[Figure]:
+    """Time first dots, relaxation and sizes of an area of a hundredth of 16 megapixels."""
+    side = np.linspace(0.2, 0.9, 4000, dtype=np.float32)
+    reference = Reference(side[:, None] * side, _WIDTH_MM)
+    turn = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
+    reach = 11.0 + 2.0 * np.cos(5.0 * turn)
+    area = shapely.Polygon(np.column_stack([np.cos(turn), np.sin(turn)]) * reach[:, None] + 100.0)
+    style = Style(n_dots=_N_DOTS)
+    first = pulses_inside(reference, style, area)
+    return [
+        Figure(
+            f"{_N_DOTS:,} dots in an area of 16 megapixels, first dots to sizes",
+            1e3 * median_s(lambda: _stippled(reference, style, area), repeats), "ms", 150.0, 60.0,
+        ),
+        Figure(
+            f"{_STEPS} weighted steps of them",
+            1e3 * median_s(lambda: _relaxed(reference, first.position_mm, area), repeats), "ms",
+        ),
+    ]  # fmt: skip
+
+
+def _stippled(reference: Reference, style: Style, area: shapely.Polygon) -> None:
+    first = pulses_inside(reference, style, area)
+    field = PictureField.of(reference)
+    wanted = Wanted.by_rule(first.rule, 1.0)
+    engine = Relaxation(first.position_mm, area, density=field, method="even", wanted=wanted)
+    engine.run(_STEPS - 1)
+    engine.set_rules(TO_INK)
+    engine.step()
+    cells = engine.tessellation()
+    for _ in solve_radii(engine.points, reference.darkness, first.rule, tessellation=cells):
+        pass
+
+
+def _relaxed(reference: Reference, points: np.ndarray, area: shapely.Polygon) -> None:
+    field = PictureField.of(reference, [[np.square]])
+    Relaxation(points, area, density=field).run(_STEPS)

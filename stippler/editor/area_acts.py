@@ -1,0 +1,232 @@
+"""What can be done to areas besides drawing them; each is one step of the history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from stippler.drawing import records
+from stippler.drawing.area import PAGE_AREA, Area
+from stippler.editor.area_choice import AreaChoice
+from stippler.editor.messages import INFO, WARNING
+from stippler.editor.painting import Painting
+from stippler.editor.session import Session
+from stippler.errors import GeometryError
+
+if TYPE_CHECKING:
+    from stippler.drawing.document import Document
+    from stippler.drawing.planar.edits import Outcome
+    from stippler.drawing.planar.planar_map import PlanarMap
+
+Edit = Callable[["PlanarMap"], "Outcome"]
+
+
+class AreaActs:
+    """Commands on the areas of a session's document.
+
+    Attributes
+    ----------
+    tolerance_mm : float
+        What `simplify` may move a border by.
+    """
+
+    def __init__(self, session: Session, painting: Painting) -> None:
+        self._session, self._painting = session, painting
+        self.tolerance_mm = 0.2
+
+    @property
+    def choice(self) -> AreaChoice:
+        """The chosen areas."""
+        return self._painting.toolbox.areas
+
+    @property
+    def document(self) -> Document | None:
+        """The open document, if it can be edited now."""
+        session = self._session
+        ready = session.document is not None and session.paintable
+        free = not self._painting.is_busy
+        return session.document if ready and free else None
+
+    def listed(self) -> list[tuple[int, Area]]:
+        """Return the areas in the order of the list, the page last."""
+        if self._session.document is None:
+            return []
+        return in_order(self._session.document.drawing.areas)
+
+    @property
+    def n_chosen(self) -> int:
+        """How many areas are chosen, the page's not counted."""
+        document = self._session.document
+        return len(self.choice.drawn(document)) if document is not None else 0
+
+    # --- borders ------------------------------------------------------------------------------
+
+    def unite(self) -> None:
+        """Let the first chosen area take the places of the others."""
+        chosen = self._chosen()
+        if len(chosen) < 2:
+            self._warn("choose two areas or more: the first takes the places of the others")
+            return
+        from stippler.drawing.planar.edits import unite
+
+        if self.edit("Unite areas", lambda areas: unite(areas, chosen)):
+            self.choice.choose(chosen[:1])
+
+    def remove(self) -> None:
+        """Give the places of the chosen areas to the page; their dots stay."""
+        chosen = self._chosen()
+
+        def edit(areas: PlanarMap) -> Outcome:
+            from stippler.drawing.planar.edits import Outcome, remove
+
+            gone: tuple[int, ...] = ()
+            for k in chosen:
+                if k in areas.areas:
+                    areas, gone = remove(areas, k).map, (*gone, k)
+            return Outcome(areas, (), gone)
+
+        if chosen and self.edit("Remove areas", edit):
+            self.choice.choose(())
+
+    def smooth(self) -> None:
+        """Turn the borders of the chosen areas into curves."""
+        from stippler.drawing.planar.moves import smooth
+
+        self._borders("Smooth borders", smooth)
+
+    def simplify(self) -> None:
+        """Leave out nodes of the chosen areas' borders."""
+        from stippler.drawing.planar.moves import simplify
+
+        self._borders("Simplify borders", lambda m, arcs: simplify(m, arcs, self.tolerance_mm))
+
+    def _borders(self, label: str, act: Callable[[PlanarMap, list[int]], Outcome]) -> None:
+        """Change the borders of the chosen areas that no locked one has; the page's edge stays."""
+        from stippler.drawing.area_edits import held_areas
+        from stippler.drawing.planar.planar_map import OUTSIDE
+
+        document, chosen = self.document, set(self._chosen())
+        if document is None or not chosen:
+            return
+        held = {OUTSIDE, *held_areas(document.drawing)}
+
+        def edit(areas: PlanarMap) -> Outcome:
+            sides = {k: {a.left, a.right} for k, a in areas.arcs.items()}
+            arcs = [k for k, s in sides.items() if s & chosen and not s & held]
+            return act(areas, arcs)
+
+        self.edit(label, edit)
+
+    def edit(self, label: str, edit: Edit) -> bool:
+        """Edit the borders as one step; say what was repaired, or why it is refused."""
+        from stippler.drawing.area_edits import edit_areas
+
+        document = self.document
+        if document is None:
+            return False
+        try:
+            outcome = edit_areas(document, label, edit)
+        except GeometryError as error:
+            self._warn(str(error))
+            return False
+        for note in outcome.notes:
+            self._session.messages.say(note, INFO)
+        return True
+
+    # --- what an area is called, and whether it is locked, hidden ------------------------------
+
+    def rename(self, k: int, name: str) -> None:
+        """Give an area another name."""
+        name = " ".join(name.split())[:80]
+        if name:
+            self._set("Rename area", {k: {"name": name}})
+
+    def colour(self, k: int, colour: str) -> None:
+        """Give an area another colour in the list."""
+        self._set("Colour area", {k: {"colour": colour}})
+
+    def lock(self, ids: Iterable[int], locked: bool) -> None:
+        """Lock areas, or unlock them."""
+        label = "Lock areas" if locked else "Unlock areas"
+        self._set(label, {k: {"locked": locked} for k in ids})
+
+    def hide(self, ids: Iterable[int], hidden: bool) -> None:
+        """Hide areas, or show them."""
+        label = "Hide areas" if hidden else "Show areas"
+        self._set(label, {k: {"hidden": hidden} for k in ids})
+
+    def give_style(self, ids: Iterable[int], style: int) -> None:
+        """Let areas be drawn in a style."""
+        self._set("Style of areas", {k: {"style": style} for k in ids})
+
+    def move_to(self, k: int, place: int) -> None:
+        """Give an area another place in the list, counted from its top."""
+        ids = [i for i, _ in self.listed() if i != PAGE_AREA]
+        if k not in ids:
+            return
+        ids.remove(k)
+        ids.insert(min(max(place, 0), len(ids)), k)
+        self._set("Order of areas", {i: {"rank": n} for n, i in enumerate(reversed(ids), 1)})
+
+    def move_up(self, by: int) -> None:
+        """Move the first chosen area up in the list, or down."""
+        ids = [i for i, _ in self.listed() if i != PAGE_AREA]
+        chosen = [k for k in self._chosen() if k in ids]
+        if chosen:
+            self.move_to(chosen[0], ids.index(chosen[0]) - by)
+
+    def solo(self, k: int | None) -> None:
+        """Show one area alone, or all again."""
+        self.choice.show_alone(None if k == self.choice.solo else k)
+
+    def toggle(self, what: str) -> None:
+        """Lock or hide the chosen areas; undo that where all of them are."""
+        document, chosen = self.document, self._all_chosen()
+        if document is None or not chosen:
+            return
+        areas = document.drawing.areas
+        value = not all(getattr(areas[k], what) for k in chosen)
+        (self.lock if what == "locked" else self.hide)(chosen, value)
+
+    def _set(self, label: str, fields: dict[int, dict[str, Any]]) -> None:
+        document = self.document
+        if document is None:
+            return
+        areas = document.drawing.areas
+        document.begin(label)
+        for k, values in fields.items():
+            if k in areas:
+                document.set(records.AREA, k, replace(areas[k], **values))
+        document.commit()
+
+    # --- inside -------------------------------------------------------------------------------
+
+    def _chosen(self) -> list[int]:
+        document = self._session.document
+        return self.choice.drawn(document) if document is not None else []
+
+    def _all_chosen(self) -> list[int]:
+        document = self._session.document
+        return self.choice.alive(document) if document is not None else []
+
+    def _warn(self, text: str) -> None:
+        self._session.messages.say(text, WARNING)
+
+
+def in_order(areas: dict[int, Area]) -> list[tuple[int, Area]]:
+    """Return areas from the top of the list to the page, which is last."""
+    key: Callable[[int], tuple[bool, int, int]] = lambda k: (  # noqa: E731
+        k == PAGE_AREA, -areas[k].rank, -k,
+    )  # fmt: skip
+    return [(k, areas[k]) for k in sorted(areas, key=key)]
+
+
+def counts(document: Document) -> dict[int, int]:
+    """Return how many dots each area has."""
+    import numpy as np
+
+    area = document.dots.area
+    n = np.bincount(np.maximum(area, 0)) if len(area) else np.zeros(0, np.int64)
+    found: Sequence[int] = n.tolist()
+    return dict(enumerate(found))

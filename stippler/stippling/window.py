@@ -1,0 +1,139 @@
+"""A rectangle of a page's picture, at the resolution that its dots need."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.levels import Curve, table_of
+from stippler.drawing.reference import Reference
+from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.blocks import average_blocks
+
+PIXELS_PER_DOT = 60
+"""Blocks of a reference that is finer are averaged."""
+
+_MIN_PIXELS, _MIN_PIXELS_AT_EDGE = 600_000, 2_500_000
+_INKED_EDGE = 0.1  # mean darkness from which on the picture runs to the page's edge
+_DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
+
+Box = tuple[float, float, float, float]
+BoxPx = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Window:
+    """What a part of the page is dark, in pixels as fine as its dots ask for.
+
+    Its cost follows the part's own pixels, each read once, and not those of the page.
+
+    Attributes
+    ----------
+    darkness : (h, w) float32, read-only
+    pixel_mm : float
+    origin_mm : (float, float)
+        Where on the page the corner of pixel (0, 0) lies.
+    scale : float
+        Side of a pixel in those of the picture.
+    """
+
+    darkness: NDArray[np.float32]
+    pixel_mm: float
+    origin_mm: tuple[float, float]
+    scale: float
+
+    @classmethod
+    def of_page(cls, reference: Reference, n_dots: int) -> Window:
+        """Read all of a reference for so many dots.
+
+        A page of few dots, and more so one whose picture runs to its edge, is read more finely
+        than its dots alone ask for.
+        """
+        h, w = reference.source.darkness.shape
+        # the ink along a trimmed edge is evened by pixels, and would be too light with few
+        least = _MIN_PIXELS_AT_EDGE if _runs_out(reference) else _MIN_PIXELS
+        if n_dots > _DOTS_PER_PIXEL * h * w:
+            return _divided(reference, n_dots)
+        return _read(reference, (0, 0, w, h), n_dots, least, ())
+
+    @classmethod
+    def of(cls, reference: Reference, box_mm: Box, n_dots: int, *curves: Curve) -> Window:
+        """Read the box of an area for its dots.
+
+        Parameters
+        ----------
+        reference : Reference
+        box_mm : (x0, y0, x1, y1)
+            All pixels of the page that it touches are taken, one at least.
+        n_dots : int
+            How many the box is to have, about.
+        curves : callables
+            What the adjusted darkness goes through, as a style's tone curve.
+        """
+        h, w = reference.source.darkness.shape
+        side = reference.pixel_mm
+        x0, x1 = _touched(box_mm[0] / side, box_mm[2] / side, w)
+        y0, y1 = _touched(box_mm[1] / side, box_mm[3] / side, h)
+        return _read(reference, (x0, y0, x1, y1), n_dots, 0, curves)
+
+
+def _divided(reference: Reference, n_dots: int) -> Window:
+    """Divide pixels larger than dots."""
+    plain = reference.darkness
+    k = math.ceil(math.sqrt(n_dots / (_DOTS_PER_PIXEL * plain.size)))
+    darkness = np.repeat(np.repeat(plain, k, 0), k, 1)
+    darkness.flags.writeable = False
+    return Window(darkness, reference.pixel_mm / k, (0.0, 0.0), 1.0 / k)
+
+
+def _read(
+    reference: Reference, box: BoxPx, n_dots: int, least: int, curves: tuple[Curve, ...]
+) -> Window:
+    """Average blocks of pixels finer than dots can show."""
+    x0, y0, x1, y1 = box
+    n_pixels = (x1 - x0) * (y1 - y0)
+    k = max(int(math.sqrt(n_pixels / max(least, PIXELS_PER_DOT * n_dots, 1))), 1)
+    darkness = _averaged(reference, box, k, curves)
+    if darkness.flags.writeable:
+        darkness.flags.writeable = False  # as a reference's own: kernels compile for one kind
+    side = reference.pixel_mm
+    return Window(darkness, side * k, (side * x0, side * y0), float(k))
+
+
+def _averaged(
+    reference: Reference, box: BoxPx, k: int, curves: tuple[Curve, ...]
+) -> NDArray[np.float32]:
+    if k < 2:
+        return _looked_up(reference, box, curves)
+    x0, y0, x1, y1 = box
+    out = np.empty((-(-(y1 - y0) // k), -(-(x1 - x0) // k)), np.float32)
+    table = table_of(reference.adjustment.apply, *curves)
+    parallel_for(
+        average_blocks, len(out), reference.source.levels, table, y0, x0, y1, x1, k, out, grain=8
+    )
+    return out
+
+
+def _looked_up(reference: Reference, box: BoxPx, curves: tuple[Curve, ...]) -> NDArray[np.float32]:
+    """Return pixels as they are; those of the whole page without curves to the bit."""
+    x0, y0, x1, y1 = box
+    if not curves and box == (0, 0, *reference.source.darkness.shape[::-1]):
+        return reference.darkness
+    part = reference.source.levels[y0:y1, x0:x1]
+    found: NDArray[np.float32] = table_of(reference.adjustment.apply, *curves)[part]
+    return found
+
+
+def _touched(low: float, high: float, n: int) -> tuple[int, int]:
+    first = min(max(math.floor(low), 0), n - 1)
+    return first, min(max(math.ceil(high), first + 1), n)
+
+
+def _runs_out(reference: Reference) -> bool:
+    """Tell whether the picture runs to the edge of the page."""
+    plain = reference.source.darkness
+    edge = np.concatenate((plain[0], plain[-1], plain[:, 0], plain[:, -1]))
+    return float(reference.adjustment.apply(edge).mean()) > _INKED_EDGE
