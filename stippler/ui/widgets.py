@@ -281,6 +281,8 @@ class Widgets:
             imgui.push_style_color(imgui.Col_.text, (*self.theme.on_accent, 1.0))
         imgui.begin_disabled(not enabled)
         text = f"{icon}  {label}" if icon else label
+        if icon and width > 0.0 and imgui.calc_text_size(text).x > width - 6.0 * self.scale:
+            text = label
         pressed = self.fitted_button(f"{text}##{name}" if name else text, width)
         imgui.end_disabled()
         if primary and enabled:

@@ -84,7 +84,7 @@ def _comparing_commands(parts: Parts) -> Iterator[Command]:
     def can_undo() -> bool:
         return session.document is not None and session.document.history.undone is not None
 
-    yield Command("view.peek", "Look at the picture alone", peek.show_picture, (Key("o"),),
+    yield Command("view.peek", "Look at the picture alone", peek.show_picture, (Key("d", SHIFT),),
                   can=has_picture, is_on=lambda: look.peek == "picture",
                   tip="for as long as the key is held.")  # fmt: skip
     yield Command("view.before", "Look at the drawing before the last step", peek.show_before,

@@ -96,7 +96,7 @@ def _draw_helps(widgets: Widgets, look: Look, commands: Commands) -> None:
         with widgets.off("" if command.enabled else "There is no picture open."):
             value = widgets.check(label, getattr(look, field), command.explained)
         setattr(look, field, value)
-        if label == "Rulers":
+        if label == "Rulers" and not widgets.is_narrow:
             imgui.same_line(0.0, 2 * widgets.gap)
 
 

@@ -132,6 +132,7 @@ class Palette:
         """Return the commands that fit what is typed, the best first."""
         every = [*commands, *self._more()]
         if not self._typed.strip():
+            every = [one for one in every if not one.name.startswith("field.")]
             last = {name: k for k, name in enumerate(self._kept.ran)}
             return sorted(every, key=lambda command: last.get(command.name, len(last)))
         typed = self._values(self._typed)
