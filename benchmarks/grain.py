@@ -21,9 +21,10 @@ from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.resources import assets
+from stippler.stippling.pipeline import run
 from stippler.stippling.relax import Relaxation
-from stippler.stippling.relax_all import relaxed_all
 from stippler.stippling.stipple import stages
+from stippler.stippling.task import RELAX, Standing, Task
 
 GREYS = {"light": 0.15, "middle": 0.4, "dark": 0.73}
 SIDE = 1000
@@ -105,8 +106,7 @@ def _relax_all(presses: int) -> list[Figure]:
     reference = Reference(darkness.astype(np.float32), 148.0)
     *_, last = stages(reference, Style(n_dots=20_000), snapshots=False)
     points, radii = np.array(last.position_mm), np.array(last.radius_mm)
-    n, page = len(points), np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
-    page *= [reference.width_mm, reference.height_mm]
+    page = box(0.0, 0.0, reference.width_mm, reference.height_mm)
 
     def error(points: NDArray[np.float64], radii: NDArray[np.float32]) -> float:
         px = darkness.shape[1] / reference.width_mm
@@ -114,11 +114,9 @@ def _relax_all(presses: int) -> list[Figure]:
 
     before, results = error(points, radii), []
     for k in range(presses):
-        run = relaxed_all(
-            points, radii, [page], np.zeros(n, np.bool_), np.zeros(n, np.int32), reference, 20
-        )
-        for moved, sizes in run:
-            points, radii = np.array(moved), radii if sizes is None else sizes
+        task = Task(Style(), reference, RELAX, (page,), Standing(points, radii), steps=20)
+        *_, last = run(task, snapshots=False)
+        points, radii = np.array(last.position_mm), np.array(last.radius_mm)
         if k in (0, presses - 1):
             name = f"bee, 20,000: tone error after {k + 1} Relax all, over that before"
             results.append(Figure(name, error(points, radii) / before, "", 1.0, 0.9))

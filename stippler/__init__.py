@@ -12,10 +12,12 @@ from __future__ import annotations
 TYPE_CHECKING = False  # what typing has; importing it takes long enough to be interrupted in
 
 if TYPE_CHECKING:
-    from stippler.api import Drawing, fill, open, pulse_density, relax, stipple
+    from stippler.api import Drawing, fill, open, process, pulse_density, relax, stipple
     from stippler.errors import StipplerError
 
-__all__ = ["Drawing", "StipplerError", "fill", "open", "pulse_density", "relax", "stipple"]
+__all__ = [
+    "Drawing", "StipplerError", "fill", "open", "process", "pulse_density", "relax", "stipple",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> object:

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from stippler.editor.garbage_collection import Garbage
 from stippler.editor.session import Session
-from stippler.jobs.work import Work, make_ready, stipple_picture
+from stippler.jobs.preparing import make_ready
+from stippler.jobs.stippling import stipple_picture
+from stippler.jobs.work import Work
 from stippler.jobs.worker import Worker
 from stippler.settings import settings_folder
 from stippler.ui.editor_window import Editor

@@ -12,7 +12,12 @@ import typer
 from typer.exceptions import TyperException
 
 from stippler.cli_check import calibrate, check
-from stippler.cli_options import Asked, with_export_options, with_style_options
+from stippler.cli_options import (
+    Asked,
+    with_export_options,
+    with_only_style_options,
+    with_style_options,
+)
 from stippler.errors import ParameterError, StipplerError
 from stippler.kernels.machine.numba_import import skip_blas
 from stippler.names import shown
@@ -24,7 +29,7 @@ if TYPE_CHECKING:
 
 
 _INTERRUPTED = 130
-COMMANDS = ("edit", "render", "scale", "stats", "check", "calibrate", "bench", "info")
+COMMANDS = ("edit", "render", "process", "scale", "stats", "check", "calibrate", "bench", "info")
 
 app = typer.Typer(
     add_completion=False,
@@ -164,6 +169,35 @@ def _write_again(
     drawing.inputs = (file,)
     drawing.save(output, form=form, **exports)
     stops.written = True
+
+
+@app.command()
+@with_only_style_options
+def process(
+    context: typer.Context,
+    file: Annotated[Path, typer.Argument(help="A drawing (.stipple) with a picture.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="File to write, by its ending.")],
+    area: Annotated[
+        list[str], typer.Option(metavar="NAME", help="Name or number of an area; several times.")
+    ],
+    *,
+    asked: Asked,
+) -> None:
+    """Stipple areas of a drawing anew, all others untouched; what is given is their style then."""
+    from stippler.api import open as open_drawing
+    from stippler.api import process as process_areas
+    from stippler.export import check_output
+
+    check_output(output, [_input(file)], "")
+    drawing = open_drawing(file)
+    named = {one.name for one in drawing.areas.values()}
+    areas = [int(one) if one.isdecimal() and one not in named else one for one in area]
+    made = process_areas(drawing, areas, **asked.keywords)
+    made.inputs = (file,)
+    made.save(output)
+    stops.written = True
+    for note in made.notes:
+        _note(file, note)
 
 
 @app.command()

@@ -34,24 +34,40 @@ class Asked:
     ----------
     options : dict of name to option
         Those that stand there, by the names of the values they set.
+    keywords : dict
+        The style's values that stand there, as Python takes them.
     """
 
     style: Style
     tone: str
     width_mm: float
     options: dict[str, str]
+    keywords: dict[str, Any]
 
 
 def with_style_options(function: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of pictures and styles; it gets them as `asked`."""
-    parameters = (WIDTH, TONE, *PARAMETERS)
+    return _with_options(function, (WIDTH, TONE, *PARAMETERS))
+
+
+def with_only_style_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of styles alone; it gets them as `asked`."""
+    return _with_options(function, PARAMETERS)
+
+
+def _with_options(
+    function: Callable[..., None], parameters: tuple[Parameter, ...]
+) -> Callable[..., None]:
     added = {_python_name(one): (one.name, one.option) for one in parameters}
 
     def gather(values: dict[str, Any], context: typer.Context) -> Asked:
         given = {name: pair for name, pair in added.items() if _is_given(context, name)}
-        style = Style(**{one.name: _value_of(one, values[_python_name(one)]) for one in PARAMETERS})
+        found = {one.word: _value_of(one, values[_python_name(one)]) for one in PARAMETERS}
+        words = {one.word: one.name for one in PARAMETERS}
         options = dict(given.values())
-        return Asked(style, values["tone"], values["width"], options)
+        keywords = {word: found[word] for word in found if words[word] in options}
+        page = values.get("tone", TONE.default), values.get("width", WIDTH.default)
+        return Asked(Style.of(**found), *page, options, keywords)
 
     return _with(function, "asked", [*map(_option, parameters)], gather)
 

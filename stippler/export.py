@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -89,6 +90,8 @@ def save(
 ) -> list[Path]:
     """Write a drawing in the format of the file's ending, whole or not at all.
 
+    Several files take their names together, when all of them are written.
+
     Parameters
     ----------
     path : path
@@ -118,12 +121,13 @@ def save(
     inputs = list(inputs)
     check_output(path, inputs, form, **options)
     one = chosen(path, form)
-    files = list(_files(one, drawing, path, values_for(one, options)))
+    files = list(_files(one, drawing, path, values_for(one, options), show))
     for file, _ in files:
         check_writable(file, inputs)
-    for file, chunks in files:
-        with replacing(file) as stream:
-            n_written = 0
+    with contextlib.ExitStack() as all_or_none:
+        n_written = 0
+        for file, chunks in files:
+            stream = all_or_none.enter_context(replacing(file))
             for chunk in chunks:
                 stream.write(chunk)
                 n_written += len(chunk)
@@ -133,7 +137,11 @@ def save(
 
 
 def _files(
-    one: Format, drawing: Drawing, path: str | Path, values: Mapping[str, Any]
+    one: Format,
+    drawing: Drawing,
+    path: str | Path,
+    values: Mapping[str, Any],
+    show: Show | None,
 ) -> Iterator[tuple[str | Path, Iterator[bytes]]]:
     """Yield the names of files and what goes into them."""
     if one.is_data:
@@ -144,7 +152,12 @@ def _files(
     from stippler.files.write.names import plain, unique
     from stippler.files.write.plate import plate_of
 
-    sheet = plate_of(drawing, values)
+    def cancelled() -> bool:
+        if show is not None:
+            show(0)  # ends it by an exception
+        return False
+
+    sheet = plate_of(drawing, values, cancelled)
     layers = [layer for layer in sheet.layers if not layer.is_empty]
     if not one.a_file_a_layer or len(layers) < 2 or os.fspath(path) == STDOUT:
         yield path, one.write(sheet, values)

@@ -127,8 +127,20 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "clusters", _relax_a_cluster
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
+    yield "areas", partial(_stipple_an_area, reference)
     yield "brushes", warm_up_brushes
     yield "files", lambda: _write(_some_dots(reference))
+
+
+def _stipple_an_area(reference: Reference) -> None:
+    from shapely.geometry import Polygon
+
+    from stippler.drawing.style import Style
+    from stippler.stippling.pipeline import run
+    from stippler.stippling.task import Task
+
+    part = Polygon([(2, 2), (18, 5), (9, 9), (12, 18)])
+    list(run(Task(Style(n_dots=100, iterations=3), reference, parts_mm=(part,))))
 
 
 def _some_dots(reference: Reference) -> Drawing:

@@ -47,7 +47,7 @@ class Touch:
     @property
     def free(self) -> Touch:
         """The same stamp on the free dots only."""
-        free = ~self.document.dots.fixed[self.rows]
+        free = ~self.document.dots.is_fixed(self.rows)
         if free.all():
             return self
         return touch_of(self, self.rows[free], self.weight[free])

@@ -68,7 +68,7 @@ class Held:
         rows = document.rows(ids)
         rows = np.sort(rows[rows >= 0])
         dots = document.dots
-        self._ids = dots.id[rows[~dots.fixed[rows]]].copy()
+        self._ids = dots.id[rows[~dots.is_fixed(rows)]].copy()
         rows = document.rows(self._ids)
         self._position = dots.position_mm[rows].copy()
         self._radius = dots.radius_mm[rows].copy()

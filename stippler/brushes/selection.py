@@ -88,7 +88,7 @@ def fix(document: Document, ids: Ids, fixed: bool) -> None:
 
 def hold(document: Document, rows: Rows, fixed: bool) -> None:
     """Fix free dots where they are, or free those that are held, by a place or a curve."""
-    held = document.dots.fixed[rows]
+    held = document.dots.is_fixed(rows)
     rows = rows[held != fixed]
     document.change("constraint", rows, np.full(len(rows), FIXED if fixed else FREE, np.int8))
     if not fixed:
@@ -100,7 +100,7 @@ def hold(document: Document, rows: Rows, fixed: bool) -> None:
 def relax(document: Document, ids: Ids) -> None:
     """Move the free dots to the centroids of their cells, once."""
     rows = alive(document, ids)
-    rows = rows[~document.dots.fixed[rows]]
+    rows = rows[~document.dots.is_fixed(rows)]
     if len(rows):
         document.move(rows, centroids_of(document, rows))
 
@@ -108,7 +108,7 @@ def relax(document: Document, ids: Ids) -> None:
 def shake(document: Document, ids: Ids, rng: np.random.Generator) -> None:
     """Move the free dots at random, by a share of their mean distance."""
     rows = alive(document, ids)
-    rows = rows[~document.dots.fixed[rows]]
+    rows = rows[~document.dots.is_fixed(rows)]
     if not len(rows):
         return
     page = document.drawing.page

@@ -128,7 +128,7 @@ class Stroke:
         dots = self._document.dots
         if self._dragged is None:
             row = self._document.nearest(stamp.x, stamp.y, self._brush.radius_mm)
-            if row is None or dots.fixed[row]:
+            if row is None or dots.is_fixed(np.array([row]))[0]:
                 self._dragged = (-1, 0.0, 0.0)
                 return
             x, y = dots.position_mm[row]

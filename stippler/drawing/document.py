@@ -123,7 +123,7 @@ class Document:
 
     def move(self, rows: Rows, position_mm: NDArray[np.float64]) -> None:
         """Move the free ones of some dots, as far as their areas let them."""
-        free = ~self.dots.fixed[rows]
+        free = ~self.dots.is_fixed(rows)
         if not free.all():
             rows, position_mm = rows[free], position_mm[free]
         old = self.dots.position_mm[rows]
@@ -296,7 +296,13 @@ class Document:
         return self._draft is not None
 
     def begin_draft(
-        self, label: str, area: int, style: Style, reference: Reference | None = None
+        self,
+        label: str,
+        area: int,
+        style: Style,
+        reference: Reference | None = None,
+        *,
+        keeps_fixed: bool = False,
     ) -> None:
         """Begin to make the dots of an area anew; those that it has give way at once.
 
@@ -308,13 +314,16 @@ class Document:
             What they are made with, which the area has from now on.
         reference : Reference or None
             What they are made from; None leaves the drawing's.
+        keeps_fixed : bool
+            Whether its fixed dots stay.
         """
         self._no_stroke()
         self.end_run()
-        if self._draft is not None:
-            draft, self._draft = self._draft, None
-            self._apply(draft.finish().inverse())
-        replaced = np.flatnonzero(self.dots.area == area)
+        self.drop_draft()
+        gives_way = self.dots.area == area
+        if keeps_fixed:
+            gives_way &= ~self.dots.fixed
+        replaced = np.flatnonzero(gives_way)
         self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(style.pen))
         i = self.drawing.areas[area].style
         for kind, k, value in ((records.STYLE, i, style), (records.REFERENCE, 0, reference)):
@@ -322,6 +331,12 @@ class Document:
                 self._draft.set(kind, k, value)
                 self._note_value(kind, k)
         self._renewed()
+
+    def drop_draft(self) -> None:
+        """End the draft, if there is one, and take back all it has changed."""
+        if self._draft is not None:
+            draft, self._draft = self._draft, None
+            self._apply(draft.finish().inverse())
 
     def draft(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> None:
         """Show the dots of the draft as they are now; ignored where there is none."""

@@ -67,10 +67,14 @@ class Dots:
 
     @property
     def fixed(self) -> NDArray[np.bool_]:
-        """Which dots do not move freely; a read-only copy of what `constraint` says."""
+        """Which dots do not move freely; a read-only copy of what `constraint` says of all."""
         held = np.asarray(self.constraint != FREE)
         held.flags.writeable = False
         return held
+
+    def is_fixed(self, rows: Index) -> NDArray[np.bool_]:
+        """Return which of some rows do not move freely, at the cost of these rows."""
+        return np.asarray(self.constraint[rows] != FREE)
 
     @classmethod
     def round(

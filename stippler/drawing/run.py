@@ -63,7 +63,7 @@ class Run:
             raise ValueError("the result is not one of this run")
         rows = self._rows_in(store)
         mine = rows >= 0
-        mine[mine] = (store.edited[rows[mine]] <= self.base) & ~store.dots.fixed[rows[mine]]
+        mine[mine] = (store.edited[rows[mine]] <= self.base) & ~store.dots.is_fixed(rows[mine])
         self.radius_mm[mine] = radius_mm[mine]
         store.write("radius_mm", rows[mine], radius_mm[mine])
         return int(mine.sum())

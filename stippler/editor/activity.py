@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from stippler.drawing.style import Style
     from stippler.files.native.recovery import Lost
     from stippler.jobs.work import Source, Work
-    from stippler.stippling.stipple import Progress
+    from stippler.stippling.progress import Progress
 
 
 class Desk(Protocol):
@@ -266,16 +266,71 @@ class Filling(Job):
         """Leave it at that: dots come all at once."""
 
 
-Activity = Idle | Opening | Readying | Reopening | Making | Relaxing | Filling
+@dataclass(slots=True)
+class Processing(Job):
+    """Areas are stippled anew, one after the other; all others stay untouched.
+
+    Attributes
+    ----------
+    areas : tuple of int
+        Those to be processed, in this order.
+    n_taken : int
+        How many of them are done, each as a step of its own.
+    drafting : int or None
+        The one that is being made.
+    """
+
+    source: Source | None
+    areas: tuple[int, ...]
+    n_taken: int = 0
+    drafting: int | None = None
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Keep the areas that are done since the last result, and show the one that is made."""
+        self._note(work)
+        if desk.document is None:
+            return self
+        for area, made in work.finished[self.n_taken :]:
+            self._show(desk.document, area, made)
+            desk.document.end_draft()
+            self.drafting, self.n_taken = None, self.n_taken + 1
+            _warn(desk, made, f"area {desk.document.drawing.areas[area].name!r}")
+        is_next = self.n_taken < len(self.areas) and work.area == self.areas[self.n_taken]
+        if work.progress is not None and is_next:
+            self._show(desk.document, work.area, work.progress)
+        return self
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Leave the area that is not done as it was."""
+        if desk.document is not None:
+            desk.document.drop_draft()
+        what = "area" if len(self.areas) == 1 else "areas"
+        desk.messages.say(f"{self.n_taken} of {len(self.areas)} {what} drawn")
+
+    def _show(self, document: Document, area: int, made: Progress) -> None:
+        from stippler.jobs.processing import begin
+
+        if self.drafting != area:
+            begin(document, area)
+            self.drafting = area
+        document.draft(made.position_mm, made.radius_mm)
+
+
+Activity = Idle | Opening | Readying | Reopening | Making | Relaxing | Filling | Processing
 
 
 def _report(desk: Desk, n_dots: int, last: Progress | None) -> None:
     """Say what has been drawn, and what it falls short of."""
-    from stippler.stippling.stipple import notes_on
-
     desk.messages.say(f"{n_dots:,} dots drawn")
-    notes = notes_on(last) if last is not None else ()
+    if not (last is not None and _warn(desk, last)) and not n_dots:
+        desk.messages.say("the picture is all white: a drawing without dots", WARNING)
+
+
+def _warn(desk: Desk, made: Progress, what: str = "page") -> bool:
+    """Say what dots fall short of; return whether they do."""
+    from stippler.stippling.progress import notes_on
+
+    notes = notes_on(made, what)
     if notes:
         desk.messages.say("; ".join(notes), WARNING)
-    elif not n_dots:
-        desk.messages.say("the picture is all white: a drawing without dots", WARNING)
+    return bool(notes)

@@ -18,6 +18,7 @@ GROUPS = {
     "area": "Areas",
     "nodes": "Nodes",
     "work": "Dots",
+    "line": "Lines",
     "tool": "Tool",
     "view": "View",
     "panel": "Panels",

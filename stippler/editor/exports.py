@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.editor.messages import ERROR, Messages
-from stippler.jobs import work
+from stippler.jobs.exporting import Writing, export_drawing
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -36,12 +36,16 @@ class Exports:
         The file that it is saved in.
     n_written : int
         How many files have been written so far.
+    writing : Path or None
+        The file that is being written, or was last.
     """
 
     def __init__(self, worker: Worker[Path], messages: Messages) -> None:
         self._worker, self._messages = worker, messages
         self._request: int | None = None
-        self._writing = work.Writing()
+        self._writing = Writing()
+        self._expected_bytes = 0
+        self.writing: Path | None = None
         self.n_written = 0
         self.begin_drawing()
 
@@ -54,6 +58,18 @@ class Exports:
     def n_bytes(self) -> int:
         """How much of the file has been written."""
         return self._writing.n_bytes
+
+    @property
+    def share(self) -> float | None:
+        """How much of the file is there; None where that is not known."""
+        if not self._expected_bytes or not self.n_bytes:
+            return None
+        return min(self.n_bytes / self._expected_bytes, 1.0)
+
+    @property
+    def is_given_up(self) -> bool:
+        """Whether the writing ends at its next piece."""
+        return self._writing.given_up
 
     def give_up(self) -> None:
         """End the writing at its next piece; what stood there before stays."""
@@ -95,6 +111,7 @@ class Exports:
         inputs: tuple[Path, ...] = (),
         *,
         is_copy: bool = False,
+        expected_bytes: int = 0,
     ) -> None:
         """Write a drawing as it is now.
 
@@ -106,11 +123,14 @@ class Exports:
             Whether the drawing stays that of the file it was saved in before.
         inputs : paths
             The files that the drawing was made from, which are never written over.
+        expected_bytes : int
+            About how large the file will be; 0 is not known.
         """
+        self.writing, self._expected_bytes = path, expected_bytes
         drawing = document.drawing.snapshot()
-        self._writing = writing = work.Writing()
+        self._writing = writing = Writing()
         self._request = self._worker.start(
-            lambda: work.export_drawing(drawing, path, options, inputs, writing)
+            lambda: export_drawing(drawing, path, options, inputs, writing)
         )
         self._mark, self._is_copy = _mark(document), is_copy
         self._messages.say(f"writing {path.name}")
@@ -134,7 +154,9 @@ class Exports:
         if update.request_id != self._request or not update.ended:
             return None
         self._request = None
-        if update.failure is not None:
+        if update.failure is not None and self._writing.given_up:
+            self._messages.say(str(update.failure))
+        elif update.failure is not None:
             self._messages.say(str(update.failure), ERROR, update.failure.__cause__)
         elif update.ended == "finished" and update.result is not None:
             self.n_written += 1

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL
+from stippler.drawing.area import PAGE_AREA
+from stippler.editor import processing
 from stippler.editor.activity import (
-    Activity,
     Filling,
     Idle,
     Job,
     Making,
     Opening,
+    Processing,
     Relaxing,
     Reopening,
 )
@@ -23,11 +25,11 @@ from stippler.editor.exports import SAVED, Exports
 from stippler.editor.keeping import Keeping
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
+from stippler.editor.session_state import SessionState, Stipple
 from stippler.errors import ParameterError, StipplerError
-from stippler.jobs import work
+from stippler.jobs import reading, stippling, work
 from stippler.jobs.work import Source, Work
-from stippler.names import shown
-from stippler.stippling.fill import Filling as FillValues
+from stippler.stippling.task import SETTLE, Standing, Task
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -37,18 +39,8 @@ if TYPE_CHECKING:
     from stippler.files.native.recovery import Lost
     from stippler.jobs.worker import Update, Worker
 
-Phase = Literal["empty", "running", "paused", "done", "stopped", "failed"]
 
-
-class Stipple(Protocol):
-    """Makes a job out of a picture, a style, and the picture's reference if it is known."""
-
-    def __call__(self, source: Source, style: Style, reference: Reference | None) -> Iterator[Work]:
-        """Return the job's results to come."""
-        ...
-
-
-class Session:
+class Session(SessionState):
     """The open drawing, the values of the next one, and the job that runs.
 
     Parameters
@@ -59,25 +51,6 @@ class Session:
         To begin with.
     stipple : callable
         Makes the jobs.
-
-    Attributes
-    ----------
-    style : Style
-        As the panels show it; the drawing holds what its dots were asked for with.
-    tone, width_mm, adjustment
-        Likewise: how the next start takes the picture.
-    activity : Activity
-        What is being done now; all that concerns only that is kept there.
-    document : Document or None
-        The open drawing; everything that is shown, painted on and written is in it.
-    filling : stippler.stippling.fill.Filling
-        How a page without a picture is filled next.
-    notes : tuple of str
-        How the open picture was read, as far as that is to be known.
-    revision : int
-        Grows whenever another drawing is open.
-    exports : Exports
-        Which file the drawing was last written to, and whether one is being written.
     """
 
     def __init__(
@@ -96,21 +69,10 @@ class Session:
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
         self._make_ready = make_ready
-        self.style = style
-        self.tone, self.width_mm = tone, width_mm
-        self.adjustment = NEUTRAL
-        self.activity: Activity = Idle()
-        self.document: Document | None = None
-        self.revision = 0
-        self.filling = FillValues()
-        self.messages = Messages(clock)
-        self.notes: tuple[str, ...] = ()
-        self.exports = Exports(exporter, self.messages)
-        self.keeping = Keeping(recovery, self.messages, clock)
         self._is_warm = is_warm
-        self._read: Source | None = None  # where the drawing's picture came from
-        self._steps = StepRate()
-        self._stage: tuple[str, float] = ("", 0.0)  # and since when
+        self.messages = Messages(clock)
+        self.keeping = Keeping(recovery, self.messages, clock)
+        super().__init__(style, tone, width_mm, Exports(exporter, self.messages))
 
     # --- what a person does -----------------------------------------------------------------
 
@@ -122,23 +84,24 @@ class Session:
 
     def open_reference(self, path: Path) -> None:
         """Open a picture only to draw after it by hand: no dots are made."""
-        self._supersede()
+        self.supersede()
         source = Source(path, self.tone, self.width_mm, NEUTRAL)
-        request = self._worker.start(lambda: work.read_only(source, is_warm=self._is_warm))
-        self._run(Opening(request, work.READ, source, self.style, by_hand=True))
+        self.launch(
+            lambda: reading.read_only(source, is_warm=self._is_warm),
+            lambda k: Opening(k, work.READ, source, self.style, by_hand=True),
+        )
 
     def open_drawing(self, path: Path) -> None:
         """Open a drawing that was saved."""
-        self._reopen(work.open_drawing(path, is_warm=self._is_warm), file=path)
+        self._reopen(reading.open_drawing(path, is_warm=self._is_warm), file=path)
 
     def recover(self, lost: Lost) -> None:
         """Open what a crash has left of a drawing."""
-        self._reopen(work.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
+        self._reopen(reading.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
 
     def _reopen(self, job: Iterator[Work], *, file: Path | None, lost: Lost | None = None) -> None:
-        self._supersede()
-        request = self._worker.start(lambda: job)
-        self._run(Reopening(request, work.READ, file=file, lost=lost))
+        self.supersede()
+        self.launch(lambda: job, lambda k: Reopening(k, work.READ, file=file, lost=lost))
 
     def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
         """Open a drawing that was kept; what a crash had left of it goes when it is kept anew."""
@@ -171,17 +134,21 @@ class Session:
         source = self._asked
         if source is None:
             self.messages.say("open a picture first", WARNING)
-            return
-        self._begin(self._as_wanted(source))
+        elif self.document is None or self.starts_afresh or len(self.document.drawing.areas) == 1:
+            self._begin(self._as_wanted(source))
+        else:
+            processing.start_all(self)
 
     def new(self, page: Page) -> None:
         """Begin a drawing on an empty page."""
-        self._supersede()
-        request = self._worker.start(self._make_ready)
-        self._run(Opening(request, work.PREPARE, None, self.style, page))
+        self.supersede()
+        style = self.style
+        self.launch(self._make_ready, lambda k: Opening(k, work.PREPARE, None, style, page))
 
-    def relax(self, iterations: int, *, weighted: bool) -> None:
-        """Relax the drawing's dots; it can be edited meanwhile, and all of it is one step."""
+    def relax(
+        self, iterations: int, *, weighted: bool, areas: Collection[int] | None = None
+    ) -> None:
+        """Relax the drawing's dots, or those of some areas, as one step; edits go on meanwhile."""
         document = self.document
         if document is None or not self.paintable or document.in_stroke:
             self.messages.say("there are no dots to relax yet", WARNING)
@@ -189,13 +156,15 @@ class Session:
         if not len(document.dots):
             self.messages.say("there are no dots to relax", WARNING)
             return
-        self._supersede()
-        frozen = replace(document.drawing, dots=document.begin_run("Relax all"))
-        spacing = self.style.spacing
-        request = self._worker.start(
-            lambda: work.relax_drawing(frozen, iterations, weighted=weighted, spacing=spacing)
+        self.supersede()
+        label = "Relax all" if areas is None else "Relax areas"
+        frozen = replace(document.drawing, dots=document.begin_run(label))
+        style = replace(self.style, weighted=weighted)
+        source = self.source
+        self.launch(
+            lambda: stippling.relax_drawing(frozen, style, iterations, areas),
+            lambda k: Relaxing(k, "relax", source, total=iterations),
         )
-        self._run(Relaxing(request, "relax", self.source, total=iterations))
 
     def take_over(self) -> bool:
         """Let a person edit the dots of a draft that is being relaxed: it is adopted as it is.
@@ -213,28 +182,30 @@ class Session:
         n_done = making.done if making.stage == "relax" else style.iterations
         document.end_draft()
         dots = document.begin_run("Settle")
-        request = self._worker.start(
-            lambda: work.carry_on(reference, style, dots.position_mm, dots.radius_mm, n_done)
-        )
-        relaxing = Relaxing(
-            request, "relax", making.source, done=n_done, total=style.iterations,
-            is_held=making.is_held,
+        standing = Standing(dots.position_mm, dots.radius_mm, dots.fixed)
+        task = Task(style, reference, SETTLE, standing=standing, n_done=n_done)
+        self.launch(
+            lambda: stippling.go_on(task),
+            lambda k: Relaxing(k, "relax", making.source, done=n_done, total=style.iterations,
+                               is_held=making.is_held),
         )  # fmt: skip
-        self._run(relaxing)
-        if relaxing.is_held:
+        if making.is_held:
             self._worker.pause()
         return True
 
-    def fill(self) -> None:
-        """Fill the page with dots, as one step."""
+    def fill(self, areas: Collection[int] = (PAGE_AREA,)) -> None:
+        """Fill the page, or some areas, with dots, as one step."""
         document, values = self.document, self.filling
         if document is None or not self.paintable or document.in_stroke:
             self.messages.say("there is no page to fill yet", WARNING)
             return
-        self._supersede()
-        outline = document.drawing.outlines()[0]
-        request = self._worker.start(lambda: work.fill(outline, values))
-        self._run(Filling(request, "fill", self.source, values.radius_mm))
+        self.supersede()
+        parts = [document.partition.part_of(k) for k in areas]
+        outlines, source = [part for part in parts if not part.is_empty], self.source
+        self.launch(
+            lambda: stippling.fill(outlines, values),
+            lambda k: Filling(k, "fill", source, values.radius_mm),
+        )
 
     def undo(self) -> None:
         """Take the last step back; a relaxation that goes on ends and is taken back."""
@@ -274,8 +245,10 @@ class Session:
         self.poll()
         if self.busy:
             self._worker.stop()
+            says_so = isinstance(self.activity, Processing)
             self._end("stopped")
-            self.messages.say("stopped; the dots that are there stay")
+            if not says_so:
+                self.messages.say("stopped; the dots that are there stay")
 
     def edit_style(self, **changes: Any) -> bool:
         """Change fields of the style; a value outside its range is refused with a line."""
@@ -286,8 +259,30 @@ class Session:
             return False
         return True
 
-    def export(self, path: Path, dpi: float) -> None:
-        """Write the drawing to a file, beside whatever else is going on."""
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that the drawing is made from, which are never written over."""
+        return tuple(source.path for source in (self.source, self._asked) if source)
+
+    def export(
+        self,
+        path: Path,
+        dpi: float,
+        options: Mapping[str, Any] | None = None,
+        *,
+        expected_bytes: int = 0,
+    ) -> None:
+        """Write the drawing to a file, beside whatever else is going on.
+
+        Parameters
+        ----------
+        dpi : float
+            Where the options give none.
+        options : mapping, optional
+            Of the format; see `stippler.export.save`.
+        expected_bytes : int
+            About how large it will be, to tell how far it is.
+        """
         if self.exporting:
             self.messages.say("the last export is still being written", WARNING)
             return
@@ -297,8 +292,8 @@ class Session:
         if not self.n_dots:
             self.messages.say("there are no dots to export", WARNING)
             return
-        inputs = tuple(source.path for source in (self.source, self._asked) if source)
-        self.exports.start(self.document, path, {"dpi": dpi}, inputs)
+        values = {"dpi": dpi} if options is None else options
+        self.exports.start(self.document, path, values, self.inputs, expected_bytes=expected_bytes)
 
     def save(self, path: Path, *, is_copy: bool = False) -> None:
         """Write all of the drawing to a file of its own, to go on with later.
@@ -349,146 +344,27 @@ class Session:
             self.messages.say(str(failure), ERROR, failure.__cause__ if failure else None)
         return True
 
-    # --- what there is to show --------------------------------------------------------------
-
-    @property
-    def drawing(self) -> Drawing | None:
-        """The open drawing; only its document changes it."""
-        return self.document.drawing if self.document is not None else None
-
-    @property
-    def source(self) -> Source | None:
-        """The picture that is open, as the drawing takes it; one never read never gets here."""
-        if self._read is None or self.reference is None:
-            return None
-        return replace(self._read, adjustment=self.reference.adjustment)
-
-    @property
-    def busy(self) -> bool:
-        """Whether a job runs or is held."""
-        return isinstance(self.activity, Job)
-
-    @property
-    def phase(self) -> Phase:
-        """How the work stands, in a word."""
-        if isinstance(self.activity, Job):
-            return "paused" if self.activity.is_held else "running"
-        return self.activity.outcome if self.document is not None else "empty"  # type: ignore[return-value]
-
-    @property
-    def stage(self) -> str:
-        """What the job is at; empty without one."""
-        return self.activity.stage if isinstance(self.activity, Job) else ""
-
-    @property
-    def stage_s(self) -> float:
-        """How long the job has been at its stage."""
-        if self.stage != self._stage[0]:
-            self._stage = (self.stage, self._clock())
-        return self._clock() - self._stage[1]
-
-    @property
-    def done(self) -> int:
-        """How much of its stage the job has done."""
-        return self.activity.done if isinstance(self.activity, Job) else 0
-
-    @property
-    def total(self) -> int:
-        """How much there is to do in this stage; 0 if it is not known."""
-        return self.activity.total if isinstance(self.activity, Job) else 0
-
-    @property
-    def exporting(self) -> bool:
-        """Whether a file is being written."""
-        return self.exports.busy
-
-    @property
-    def unsaved(self) -> bool:
-        """Whether work of a person's hand is in the drawing and not in the file it is saved in."""
-        return self.document is not None and self.exports.lack(self.document)
-
-    @property
-    def starts_afresh(self) -> bool:
-        """Whether `start` would read the picture anew, and so begin another drawing."""
-        source = self.source
-        return source is not None and not self._as_wanted(source).is_read_as(source)
-
-    @property
-    def relaxing(self) -> bool:
-        """Whether the job that runs moves the drawing's own dots."""
-        return isinstance(self.activity, Relaxing)
-
-    @property
-    def paintable(self) -> bool:
-        """Whether the dots can be edited now: they are there, and no job makes new ones."""
-        return self.document is not None and isinstance(self.activity, Idle | Relaxing)
-
-    @property
-    def steps_per_s(self) -> float:
-        """Relaxation steps a second in the work that runs, or the last; 0 before any."""
-        return self._steps.per_s
-
-    @property
-    def n_dots(self) -> int:
-        """How many dots there are to show."""
-        return len(self.document.dots) if self.document is not None else 0
-
-    @property
-    def reference(self) -> Reference | None:
-        """The open picture's darkness."""
-        return self.drawing.reference if self.drawing is not None else None
-
-    @property
-    def name(self) -> str:
-        """File name of the picture that is open or being opened."""
-        source = self._asked
-        if self.exports.file is not None and not isinstance(self.activity, Opening):
-            return shown(self.exports.file.name)
-        return (
-            shown(source.path.name) if source else "Untitled" if self.document is not None else ""
-        )
-
-    @property
-    def outdated(self) -> bool:
-        """Whether the dots at hand were made with other values than the panels show."""
-        asked, job = self._asked, self.activity
-        if asked is None:
-            return False
-        style = job.style if isinstance(job, Opening | Making) else self._style
-        return asked != self._as_wanted(asked) or style != self.style
-
     # --- inside -----------------------------------------------------------------------------
 
-    @property
-    def _asked(self) -> Source | None:
-        """The picture of the job that runs, or else the one that is open."""
-        job = self.activity
-        if isinstance(job, Opening | Making | Relaxing | Filling) and job.source is not None:
-            return job.source
-        return None if isinstance(job, Opening) else self.source
-
-    @property
-    def _style(self) -> Style | None:
-        return self.drawing.style_of(0) if self.drawing is not None else None
-
-    def _as_wanted(self, source: Source) -> Source:
-        return replace(source, tone=self.tone, width_mm=self.width_mm, adjustment=self.adjustment)
-
     def _begin(self, source: Source) -> None:
-        self._supersede()
+        self.supersede()
         known = self.reference if source.is_read_as(self._read) else None
         style, stipple = self.style, self._stipple
-        request = self._worker.start(lambda: stipple(source, style, known))
-        if known is None:
-            self._run(Opening(request, work.READ, source, style))
-        else:
-            self._run(Making(request, "first dots", source, style))
+        self.launch(
+            lambda: stipple(source, style, known),
+            lambda k: (
+                Opening(k, work.READ, source, style)
+                if known is None
+                else Making(k, "first dots", source, style)
+            ),
+        )
 
-    def _run(self, job: Job) -> None:
-        self.activity = job  # type: ignore[assignment]
+    def launch(self, run: Callable[[], Iterator[Work]], job: Callable[[int], Job]) -> None:
+        """Let the worker run something; `job` makes the activity of the request's number."""
+        self.activity = job(self._worker.start(run))  # type: ignore[assignment]
         self._steps = StepRate()
 
-    def _supersede(self) -> None:
+    def supersede(self) -> None:
         """End what goes on, since the worker's next job takes its place."""
         if isinstance(self.activity, Job) and not isinstance(self.activity, Making):
             self._end("stopped")  # what is being made is shown until there are other dots

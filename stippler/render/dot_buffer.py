@@ -111,7 +111,7 @@ class DotBuffer:
         changed = self._row_of_slot[slots]
         fresh = gpu_dots.words(len(slots))
         gpu_dots.pack(dots, origin_mm, selected, changed, fresh)
-        self.has_flags = self.has_flags or bool((dots.fixed[rows] | selected[rows]).any())
+        self.has_flags = self.has_flags or bool((dots.is_fixed(rows) | selected[rows]).any())
         self._words[slots] = fresh
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
         self._upload_runs(slots)

@@ -26,12 +26,14 @@ _LEAST, _LIMIT = 200, 500_000
 _FINE = 4  # blocks a side of a dot's cell; what is finer is grain
 
 
-def default_number(reference: Reference) -> int:
+def default_number(reference: Reference, page_mm2: float | None = None) -> int:
     """Return how many dots suit a reference and its page.
 
     Parameters
     ----------
     reference : Reference
+    page_mm2 : float, optional
+        Of the page, where the reference is that of a part.
 
     Returns
     -------
@@ -41,7 +43,7 @@ def default_number(reference: Reference) -> int:
     """
     area = reference.width_mm * reference.height_mm
     ink = float(reference.darkness.mean(dtype=np.float64)) * area
-    radius = _RADIUS_MM * (area / _ON_MM2) ** 0.25
+    radius = _RADIUS_MM * ((page_mm2 or area) / _ON_MM2) ** 0.25
     usual = ink / (math.pi * radius**2)
     if usual < 1.0:
         return _LEAST
@@ -53,11 +55,11 @@ def default_number(reference: Reference) -> int:
     return _rounded(min(max(min(wanted, printable), _LEAST), _LIMIT))
 
 
-def with_number(style: Style, reference: Reference) -> Style:
+def with_number(style: Style, reference: Reference, page_mm2: float | None = None) -> Style:
     """Give a style that asks for neither a number nor sizes the number that suits a reference."""
     if style.n_dots is not None or style.size_range_mm is not None:
         return style
-    return replace(style, n_dots=default_number(reference))
+    return replace(style, n_dots=default_number(reference, page_mm2))
 
 
 def _loss(darkness: NDArray[np.float32], cell_px: float) -> float:

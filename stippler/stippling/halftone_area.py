@@ -143,11 +143,11 @@ def _cells_of(
     h, w = window.darkness.shape
     at = np.ix_(np.clip(y.astype(np.intp), 0, h - 1), np.clip(x.astype(np.intp), 0, w - 1))
     cells = window.darkness[at]
-    outside_polygon((_edges(part) - (x0, y0, x0, y0)) / side, cells)
+    outside_polygon((edges_of(part) - (x0, y0, x0, y0)) / side, cells)
     return _Cells(cells, side, np.array([x0, y0]))
 
 
-def _edges(area: Polygon | MultiPolygon) -> NDArray[np.float64]:
+def edges_of(area: Polygon | MultiPolygon) -> NDArray[np.float64]:
     """Return the border of a polygon as (m, 4) edges."""
     parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]

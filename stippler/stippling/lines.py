@@ -337,6 +337,12 @@ def row(line: Line, n: int | None = None, distance_mm: float | None = None,
 
     An open line's first and last dot lie half a distance from its ends.
     """
+    return line.at(row_along(line, n, distance_mm, tone))
+
+
+def row_along(line: Line, n: int | None = None, distance_mm: float | None = None,
+              tone: Tone | None = None) -> Points:  # fmt: skip
+    """Return the arc lengths of a row of dots; see `row`."""
     if (n is None) == (distance_mm is None):
         raise ParameterError("give a number or a distance, not both", "row")
     if n is None:
@@ -346,7 +352,7 @@ def row(line: Line, n: int | None = None, distance_mm: float | None = None,
     if not 1 <= n <= MOST_ROW:
         raise ParameterError(f"{n} dots cannot be laid", "row", f"give 1 to {MOST_ROW:,}")
     start = np.arange(n) / n * line.length_mm
-    return line.at(spread(line, start, tone))
+    return spread(line, start, tone)
 
 
 INSIDE, OUTSIDE, ON = "inside", "outside", "on"

@@ -6,9 +6,12 @@ solved again where the dots come to lie; sizes that a person has set stay.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 from scipy.spatial import KDTree
@@ -17,81 +20,173 @@ from stippler.drawing.reference import Reference
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
 from stippler.stippling.page_raster import PageRaster
+from stippler.stippling.picture_field import PictureField
+from stippler.stippling.progress import DONE, RELAXED, Progress, Step
 from stippler.stippling.radii import solve_radii
-from stippler.stippling.relax import AT_REST, Relaxation
+from stippler.stippling.relax import AT_REST, Relaxation, StepReport
 from stippler.stippling.spacing import AT_LAST, TO_INK, Wanted
+from stippler.stippling.task import Standing, Task
+from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import DotRule, ink_for
 from stippler.stippling.transport import with_long_waves_gone
 
 _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solved
 _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
+_WHOLE = 1e-6  # of the page
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
 
-Arrays = tuple[NDArray[np.float64], NDArray[np.float32] | None]
+Floats = NDArray[np.float64]
 
 
-def relaxed_all(
-    position_mm: NDArray[np.float64],
-    radius_mm: NDArray[np.float32],
-    outlines: Sequence[Shape | NDArray[np.float64]],
-    fixed: NDArray[np.bool_],
-    outline_of_dot: NDArray[np.integer],
-    reference: Reference | None,
-    steps: int,
-) -> Iterator[Arrays]:
-    """Space the free dots of a drawing evenly, each within its outline.
+@dataclass(slots=True, eq=False)
+class StandingDraft:
+    """A drawing's own dots while they are spaced anew; lengths are mm.
 
-    Yields
-    ------
-    position_mm : (n, 2) float64
-        After each step.
-    radius_mm : (n,) float32 or None
-        Sizes for these places; given once, at the end, where any were solved.
+    Attributes
+    ----------
+    points : (n, 2) float64
+    radius_mm : (n,) float32
     """
-    if reference is None or not len(position_mm):
-        position_mm = with_long_waves_gone(position_mm, outlines, outline_of_dot, fixed)
-        engine = Relaxation(position_mm, outlines, fixed, outline_of_dot, method="even")
-        for _ in range(steps):
-            report = engine.step()
-            yield engine.points, None
-            if report.largest_mm <= AT_REST * engine.spacing_mm:
-                return
+
+    task: Task
+    standing: Standing
+    points: Floats
+    radius_mm: NDArray[np.float32]
+    sheet: _Sheet | None = None
+
+    @classmethod
+    def of(cls, task: Task) -> StandingDraft:
+        """Begin a task that moves what is there."""
+        standing = task.standing
+        assert standing is not None, "there is nothing to be moved"
+        return cls(task, standing, standing.position_mm, standing.radius_mm)
+
+    @property
+    def n_steps(self) -> int:
+        """How many steps are to be taken."""
+        return self.task.style.iterations if self.task.steps is None else self.task.steps
+
+    @property
+    def keeps_tone(self) -> bool:
+        """Whether there is a picture whose tone the dots keep while they are spaced evenly."""
+        style = self.task.style
+        return self.task.reference is not None and style.spacing == "even" and style.weighted
+
+    @property
+    def parts(self) -> list[Shape]:
+        """What the dots do not leave."""
+        return list(self.task.parts_mm)
+
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Those that stay where they are."""
+        fixed = self.standing.fixed
+        return np.zeros(len(self.points), np.bool_) if fixed is None else fixed
+
+    def without_long_waves(self, still: NDArray[np.bool_], sheet: _Sheet | None = None) -> Floats:
+        """Return where the dots lie without long waves in them, each within its part."""
+        of_dot = self.standing.part_of_dot
+        if of_dot is None:
+            of_dot = np.zeros(len(self.points), np.intp)
+        density = None if sheet is None else sheet.density_at
+        return with_long_waves_gone(self.points, self.parts, of_dot, still, density)
+
+    def progress(self, step: Step, watched: bool) -> Progress:
+        """Return a snapshot after a step."""
+        points = _frozen(self.points) if watched else np.empty((0, 2))
+        sizes = self.radius_mm if watched else np.empty(0, np.float32)
+        return Progress(step.stage, step.done, step.total, points, _frozen(sizes), step.movement_mm)
+
+    def finished(self) -> Progress:
+        """Return the last snapshot."""
+        return Progress(DONE, 1, 1, _frozen(self.points), _frozen(self.radius_mm))
+
+
+def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
+    """Space the free dots, each within its part; those at rest are left alone."""
+    total = draft.n_steps
+    yield Step(RELAXED, 0, total)
+    if not len(draft.points):
         return
-    sheet = _Sheet(position_mm, radius_mm, reference)
-    still = fixed | sheet.beside(position_mm)
-    before_mm = position_mm
-    position_mm = with_long_waves_gone(
-        position_mm, outlines, outline_of_dot, still, sheet.density_at
+    steps = _keeping_tone(draft, total) if draft.keeps_tone else _by_method(draft, total)
+    for k, report in enumerate(steps, start=1):
+        yield Step(RELAXED, min(k, total), total, float(report.mean_mm))
+
+
+def size_again(draft: StandingDraft, watched: bool) -> Iterator[Step]:
+    """Solve sizes for the places where the dots are now; those a person has set stay."""
+    if draft.sheet is not None:
+        solved = draft.sheet.solved_at(draft.points)
+        draft.radius_mm = draft.radius_mm if solved is None else solved
+    yield from ()
+
+
+def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
+    style, reference, standing = draft.task.style, draft.task.reference, draft.standing
+    field = None
+    if style.weighted and reference is not None:
+        # dots settle at the root of their weight
+        field = PictureField.of(reference, ((np.square,),))
+    evenly = reference is None and style.spacing == "even"
+    method = "lloyd" if style.spacing == "even" and not evenly else style.spacing
+    if evenly:
+        draft.points = draft.without_long_waves(draft.fixed)
+    engine = Relaxation(
+        draft.points, draft.parts, draft.fixed, standing.part_of_dot, field, method=method
     )
+    for _ in range(total):
+        report = engine.step()
+        draft.points = engine.points
+        yield report
+        if evenly and report.largest_mm <= AT_REST * engine.spacing_mm:
+            return
+
+
+def _keeping_tone(draft: StandingDraft, total: int) -> Iterator[StepReport]:
+    reference, standing = draft.task.reference, draft.standing
+    assert reference is not None, "without one there is no tone to keep"
+    before = draft.points
+    sheet = _Sheet(draft, reference)
+    still = draft.fixed | sheet.beside(before)
+    start = draft.without_long_waves(still, sheet)
     field = DensityField(sheet.raster.darkness, sheet.raster.pixel_mm)
 
     def engine_for(still: NDArray[np.bool_]) -> Relaxation:
         return Relaxation(
-            position_mm, outlines, still, outline_of_dot, field,
+            start, draft.parts, still, standing.part_of_dot, field,
             method="even", wanted=sheet.wanted, radius_mm=sheet.sizes,
         )  # fmt: skip
 
     engine = engine_for(still)
     engine.set_rules(AT_LAST)
-    engine.step()
-    awake = _around_restless(position_mm, engine.points, ~still)
-    awake |= (position_mm != before_mm).any(axis=1)
+    report = engine.step()
+    awake = _around_restless(start, engine.points, ~still)
+    awake |= (start != before).any(axis=1)
     if not awake.any():
-        yield position_mm, None
+        yield report
         return
     engine = engine_for(~awake)
-    last = int(bool(sheet.is_solved.any()) and steps > 1)
-    for _ in range(steps - last):
+    draft.sheet = sheet
+    last = int(bool(sheet.is_solved.any()) and total > 1)
+    for _ in range(total - last):
         report = engine.step()
-        yield engine.points, None
+        draft.points = engine.points
+        yield report
         if report.largest_mm <= AT_REST * engine.spacing_mm:
             break
     if last:
         engine.set_rules(TO_INK)
-        engine.step()
-        yield engine.points, None
-    yield engine.points, sheet.solved_at(engine.points)
+        report = engine.step()
+        draft.points = engine.points
+        yield report
+
+
+def _frozen(values: NDArray[Any]) -> NDArray[Any]:
+    if values.flags.writeable:
+        values = values.copy()
+        values.flags.writeable = False
+    return values
 
 
 def _around_restless(
@@ -113,12 +208,18 @@ def _around_restless(
 class _Sheet:
     """A finished drawing on the raster of its reference: which sizes were solved, and the rule."""
 
-    def __init__(
-        self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32], reference: Reference
-    ) -> None:
+    def __init__(self, draft: StandingDraft, reference: Reference) -> None:
+        position_mm, radius_mm = draft.points, draft.radius_mm
         self.radius_mm = radius_mm
         self.raster = PageRaster.of(reference, len(position_mm), None, bleeds=False)
         pixel = self.raster.pixel_mm
+        w, h = self.raster.size_mm
+        parts, of_dot = draft.task.parts_mm, draft.standing.part_of_dot
+        covered = sum(part.area for part in parts)
+        self._covered_mm2 = min(covered, w * h)
+        self._within = None  # the cells are the page's, where all of it takes part
+        if covered < (1.0 - _WHOLE) * w * h:
+            self._within = [shapely.transform(p, lambda xy: xy / pixel) for p in parts], of_dot
         sizes = radius_mm.astype(np.float64)
         self.rule = DotRule(float(sizes.min()) / pixel, float(sizes.max()) / pixel)
         self.is_solved = np.zeros(len(sizes), np.bool_)
@@ -136,7 +237,7 @@ class _Sheet:
     def beside(self, position_mm: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell which dots lie so near to the edge of the page that its bleed held them."""
         size = np.array(self.raster.size_mm)
-        spacing = np.sqrt(size.prod() / len(position_mm))
+        spacing = np.sqrt(self._covered_mm2 / len(position_mm))
         near = np.minimum(position_mm, size - position_mm).min(axis=1) < _BESIDE * spacing
         return np.asarray(near, np.bool_)
 
@@ -159,7 +260,12 @@ class _Sheet:
     def _solved(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
         pixel = self.raster.pixel_mm
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / pixel
-        *_, (_, radii) = solve_radii(inside, self.raster.darkness, self.rule)
+        cells = None
+        if self._within is not None:
+            parts, of_dot = self._within
+            field = DensityField(self.raster.darkness, 1.0)
+            cells = Tessellation.of(inside, parts, of_dot, field)
+        *_, (_, radii) = solve_radii(inside, self.raster.darkness, self.rule, tessellation=cells)
         return radii * pixel
 
     def _size_by_darkness(

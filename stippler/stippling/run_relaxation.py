@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.style import Style
 from stippler.stippling.density import DensityField
+from stippler.stippling.field_sums import Weights
+from stippler.stippling.ground import Ground
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.spacing import LLOYD, TO_INK, Rules, Wanted, rules_after
@@ -24,21 +25,17 @@ Steps = Iterator[tuple[NDArray[np.float64], float]]
 
 
 def relaxed(
-    raster: PageRaster,
-    style: Style,
+    ground: Ground,
     points: NDArray[np.float64],
-    outline_mm: NDArray[np.float64],
     fixed: NDArray[np.bool_] | None = None,
     n_done: int = 0,
     watched: bool = True,
 ) -> Steps:
-    """Relax the dots of a raster by the steps that are left after `n_done`.
+    """Relax dots as the ground's style asks for, by the steps that are left after `n_done`.
 
     Parameters
     ----------
     points : (n, 2) float64, pixels
-    outline_mm : (4, 2) float64
-        Of the page, or of all that has darkness.
     fixed : (n,) bool, optional
     watched : bool
         Whether somebody looks at the dots of each step; else only those of the last are read out.
@@ -50,14 +47,16 @@ def relaxed(
     movement_mm : float
         Their mean movement in it.
     """
+    raster, style = ground.raster, ground.style
     at = points * raster.pixel_mm
     if style.spacing == "even" and style.weighted:
-        yield from _evenly(raster, style, at, outline_mm, fixed, n_done, watched)
+        yield from _evenly(ground, at, fixed, n_done, watched)
         return
-    for n_steps, field in step_weights(raster, style, n_done):
-        inside = np.clip(at, outline_mm[0], outline_mm[2])
+    for n_steps, field in step_weights(ground, n_done):
         method = "lloyd" if style.spacing == "even" else style.spacing
-        engine = Relaxation(inside, outline_mm, fixed, density=field, method=method)
+        engine = Relaxation(
+            ground.inside(at), ground.outline_mm, fixed, density=field, method=method
+        )
         for k in range(n_steps):
             report = engine.step()
             is_read = watched or k == n_steps - 1
@@ -66,21 +65,21 @@ def relaxed(
 
 
 def _evenly(
-    raster: PageRaster,
-    style: Style,
+    ground: Ground,
     at: NDArray[np.float64],
-    outline_mm: NDArray[np.float64],
     fixed: NDArray[np.bool_] | None,
     n_done: int,
     watched: bool,
 ) -> Steps:
-    field = raster.ink_field()
+    raster, style = ground.raster, ground.style
+    field = ground.ink_field()
     if n_done == 0 and style.first_dots == "random":
-        at = evened_out(at, raster.density(), raster.pixel_mm, tuple(outline_mm[0]), fixed)
+        corner = (float(raster.outline_mm()[0, 0]), float(raster.outline_mm()[0, 1]))
+        at = evened_out(at, raster.density(), raster.pixel_mm, corner, fixed)
     elif n_done == 0:
         at = _with_order_broken(at, raster, style.seed, fixed)
     engine = Relaxation(
-        np.clip(at, outline_mm[0], outline_mm[2]), outline_mm, fixed, density=field,
+        ground.inside(at), ground.outline_mm, fixed, density=field,
         method="even", wanted=Wanted.by_rule(raster.rule, raster.pixel_mm),
     )  # fmt: skip
     sizes_follow = style.sizes == "tone" and raster.rule.varies
@@ -123,9 +122,7 @@ def _with_order_broken(
     return out
 
 
-def step_weights(
-    raster: PageRaster, style: Style, n_done: int = 0
-) -> Iterator[tuple[int, DensityField]]:
+def step_weights(ground: Ground, n_done: int = 0) -> Iterator[tuple[int, Weights]]:
     """Yield how many of Lloyd's steps are left after those done, and by what they are weighted.
 
     By the square of the density, since dots settle at its root. The last steps are weighted by
@@ -134,6 +131,7 @@ def step_weights(
     one size do without. The paper's form weighs all ink alike; white weighs nothing in any form,
     and draws no dots.
     """
+    raster, style = ground.raster, ground.style
     x, y = raster.outline_mm()[0]
     solved = style.weighted and style.sizes == "tone" and raster.rule.varies
     n_last = min(_LAST_STEPS, style.iterations // 3) if solved else 0
@@ -144,4 +142,4 @@ def step_weights(
         yield n_first, DensityField(weight, raster.pixel_mm, (float(x), float(y)))
     n_last = min(n_last, style.iterations - n_done)
     if n_last > 0:
-        yield n_last, raster.ink_field()
+        yield n_last, ground.ink_field()

@@ -159,7 +159,7 @@ def _part(
     from scipy.spatial import cKDTree
 
     at, own = position[mine], ink[mine]
-    count = _rounded(at, wanted, dots.fixed[mine])
+    count = _rounded(at, wanted, dots.is_fixed(mine))
     stays = np.flatnonzero(count > 0)
     if not len(stays):
         stays = np.array([int(np.argmax(own))])
@@ -244,10 +244,10 @@ def _relax(dots: Dots, outline: Polygon | MultiPolygon | None) -> None:
     density = _density(dots, shape)
     box = np.array(shape.bounds)
     bounds = shapely.box(*box) if isinstance(shape, shapely.MultiPolygon) else shape
-    engine = Relaxation(dots.position_mm[inside], bounds, dots.fixed[inside], density=density)
+    engine = Relaxation(dots.position_mm[inside], bounds, dots.is_fixed(inside), density=density)
     engine.run(_STEPS)
     moved = engine.points
-    stays = shapely.intersects_xy(shape, *moved.T) & ~dots.fixed[inside]
+    stays = shapely.intersects_xy(shape, *moved.T) & ~dots.is_fixed(inside)
     dots.position_mm[inside[stays]] = moved[stays]
 
 

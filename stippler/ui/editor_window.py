@@ -21,6 +21,7 @@ from stippler.editor.events import (
 )
 from stippler.editor.hands import Hands
 from stippler.editor.keymap import load_keys
+from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.rates import FrameRate
@@ -46,6 +47,7 @@ from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice, draw_preparing
 from stippler.ui.panels.picture import draw_picture
@@ -58,6 +60,7 @@ from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.strip import StripShape, draw_tools
 from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
+from stippler.ui.panels.writing import WritingNotice
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
 from stippler.ui.preferences import Preferences
@@ -107,6 +110,7 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self.lines = Lines(session, self.painting)
         self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
@@ -123,8 +127,11 @@ class Editor:
         )
         self._layout = Layout(self.panels.names)
         self.peek = Peek(self.look, session, self.painting)
+        self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
+            "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
+        }
         self.lens_key = LensKey(self.look)
-        self.menu = MenuBar()
+        self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
         self.popups.field_commands = FieldCommands(self.gui.fields, self._show_if_panel)
         self._load_keys()
@@ -145,6 +152,7 @@ class Editor:
             self.session,
             self.painting,
             Selecting(self.session, self.painting),
+            self.lines,
             self.area_acts,
             self.pointer,
             self.view,
@@ -178,7 +186,7 @@ class Editor:
         if events:
             self._schedule.note_input(began)
             self._may_have_changed = True
-        if self.session.poll():
+        if self.session.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -186,7 +194,7 @@ class Editor:
         if not self._schedule.due(began):
             return False
         self._frame(events, began)
-        moving = self.view.moving or self.painting.toolbox.is_timed
+        moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.exporting.moves
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
@@ -204,6 +212,7 @@ class Editor:
         self.painting.toolbox.save()
         self._keep()
         self.popups.recovery.close()
+        self.popups.exporting.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
@@ -295,6 +304,8 @@ class Editor:
             draw_preparing(self.widgets, progress_share(self.session), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
+        exports = self.session.exports
+        self._guarded("the writing", lambda: self._writing.draw(self.widgets, exports, area))
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
@@ -312,6 +323,9 @@ class Editor:
     def _draw_tool(self) -> None:
         n_selected = self.painting.n_selected
         draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected)
+        if self.painting.toolbox.name in self._of_tools:
+            self.widgets.rule()
+            self._of_tools[self.painting.toolbox.name]()
 
     def _draw_view(self) -> None:
         draw_view(self.widgets, self.look, self.view, self.commands)
@@ -506,5 +520,5 @@ class Editor:
         if self.canvas.map_is_late:
             self._schedule.wake_at(now + MAP_EVERY_S)
         self._keep_soon(now)
-        if self.popups.dialogs.waiting:
+        if self.popups.dialogs.waiting or self.session.exporting:
             self._schedule.wake_at(now + _ANSWER_S)

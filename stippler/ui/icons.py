@@ -19,6 +19,8 @@ _SCATTER = (
     (0.7, 0.75),
 )
 
+_STEPS = tuple(k / 12 for k in range(13))
+
 
 @dataclass(frozen=True, slots=True)
 class Pen:
@@ -160,6 +162,13 @@ def _select(p: Pen) -> None:
             p.line((x, y0), (x, y0 + 0.16))
 
 
+def _line(p: Pen) -> None:
+    turn = [(0.12 + 0.76 * t, 0.72 - 0.5 * t + 0.24 * math.sin(t * math.tau)) for t in _STEPS]
+    p.line(*turn)
+    for x, y in (turn[0], turn[-1]):
+        p.dot(x, y, 0.08)
+
+
 def _nodes(p: Pen) -> None:
     p.line((0.12, 0.78), (0.3, 0.42), (0.56, 0.3), (0.88, 0.22))
     for x, y in ((0.12, 0.78), (0.44, 0.34), (0.88, 0.22)):
@@ -205,6 +214,7 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "push": _push,
     "comb": _comb,
     "select": _select,
+    "line": _line,
     "nodes": _nodes,
     "area": _area,
     "knife": _knife,

@@ -7,7 +7,8 @@ from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.jobs.work import relax_drawing
+from stippler.drawing.style import Style
+from stippler.jobs.stippling import relax_drawing
 
 
 def test_dots_stay_in_what_is_their_areas() -> None:
@@ -19,6 +20,6 @@ def test_dots_stay_in_what_is_their_areas() -> None:
     document.commit()
     area = drawing.dots.area.copy()
     assert 100 < area.sum() < 800
-    *_, last = relax_drawing(drawing.snapshot(), 12, weighted=False)
+    *_, last = relax_drawing(drawing.snapshot(), Style(weighted=False), 12)
     assert np.array_equal(document.partition.area_at(last.moved_mm), area)
     assert not np.array_equal(last.moved_mm, drawing.dots.position_mm)

@@ -7,10 +7,15 @@ import pytest
 
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
-from stippler.stippling.carry_on import carry_on
+from stippler.stippling.pipeline import run
 from stippler.stippling.stipple import stages
+from stippler.stippling.task import SETTLE, Standing, Task
 
 STYLE = Style(n_dots=1500, iterations=12)
+
+
+def carry_on(reference, style, position_mm, radius_mm, n_done):
+    return run(Task(style, reference, SETTLE, (), Standing(position_mm, radius_mm), n_done))
 
 
 @pytest.fixture(scope="module")

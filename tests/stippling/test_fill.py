@@ -11,12 +11,12 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import ParameterError
-from stippler.jobs.work import fill
+from stippler.jobs.stippling import fill
 from stippler.stippling.fill import Filling
 
 
 def added(document: Document, filling: Filling, area: int) -> int:
-    *_, made = fill(document.drawing.outlines()[area], filling)
+    *_, made = fill([document.drawing.outlines()[area]], filling)
     document.begin("Fill")
     rows = document.insert(Dots.round(made.points_mm, filling.radius_mm))
     document.commit()

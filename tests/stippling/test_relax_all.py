@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 from scipy.spatial import KDTree
+from shapely.geometry import box
 
 from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
-from stippler.stippling.relax_all import relaxed_all
+from stippler.stippling.pipeline import run
 from stippler.stippling.stipple import stages
+from stippler.stippling.task import RELAX, Standing, Task
 
 W = 100.0
+PAGE = box(0.0, 0.0, W, W)
 
 
 @pytest.fixture(scope="module")
@@ -25,15 +28,9 @@ def made():
 
 
 def pressed(reference, position, radius, fixed=None, steps=20):
-    n = len(position)
-    page = np.array([(0, 0), (W, 0), (W, W), (0, W)], float)
-    fixed = np.zeros(n, bool) if fixed is None else fixed
-    run = relaxed_all(position, radius, [page], fixed, np.zeros(n, int), reference, steps)
-    sizes = None
-    moved = position
-    for now, found in run:
-        moved, sizes = now, found if found is not None else sizes
-    return np.array(moved), radius if sizes is None else sizes
+    standing = Standing(position, radius, fixed)
+    *_, last = run(Task(Style(), reference, RELAX, (PAGE,), standing, steps=steps))
+    return np.array(last.position_mm), last.radius_mm
 
 
 def tone_error(reference, position, radius):
@@ -82,8 +79,6 @@ def test_sizes_that_a_person_has_set_stay(made):
 def test_without_a_picture_dots_even_out_and_keep_their_sizes():
     rng = np.random.default_rng(5)
     position, radius = rng.random((500, 2)) * W, np.full(500, 0.3, np.float32)
-    page = np.array([(0, 0), (W, 0), (W, W), (0, W)], float)
-    run = relaxed_all(position, radius, [page], np.zeros(500, bool), np.zeros(500, int), None, 400)
-    *_, (moved, sizes) = run
-    assert sizes is None
+    moved, sizes = pressed(None, position, radius, steps=400)
+    assert (sizes == radius).all()
     assert KDTree(moved).query(moved, k=2)[0][:, 1].min() > 0.6 * W / np.sqrt(500)

@@ -9,8 +9,10 @@ from shapely.geometry import box
 
 from stippler.analysis.grain import measure_grain
 from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from stippler.stippling.pipeline import run
 from stippler.stippling.relax import Relaxation
-from stippler.stippling.relax_all import relaxed_all
+from stippler.stippling.task import RELAX, Standing, Task
 from stippler.stippling.transport import evened_out, with_long_waves_gone
 
 
@@ -86,10 +88,9 @@ def test_held_dots_stay_and_the_others_make_up_for_them():
 
 
 def relaxed(points, radii, outlines, owner, reference=None, steps=20):
-    fixed = np.zeros(len(points), np.bool_)
-    for moved, sizes in relaxed_all(points, radii, outlines, fixed, owner, reference, steps):
-        points, radii = np.array(moved), radii if sizes is None else sizes
-    return points, radii
+    standing = Standing(points, radii, part_of_dot=owner)
+    *_, last = run(Task(Style(), reference, RELAX, tuple(outlines), standing, steps=steps))
+    return np.array(last.position_mm), last.radius_mm
 
 
 @pytest.mark.parametrize("darkness", [None, 0.4])

@@ -491,16 +491,16 @@ def test_a_file_that_is_being_written_is_finished_first(
 ) -> None:
     from threading import Event
 
-    from stippler.jobs import work
+    from stippler.editor import exports
 
     opened(desk, picture)
-    gate, write = Event(), work.export_drawing
+    gate, write = Event(), exports.export_drawing
 
     def slow(*asked):
         gate.wait(30)
         return write(*asked)
 
-    monkeypatch.setattr(work, "export_drawing", slow)
+    monkeypatch.setattr(exports, "export_drawing", slow)
     out = tmp_path / "out.csv"
     desk.app.session.export(out, 600.0)
     desk.host.key("q", ctrl=True)

@@ -233,7 +233,7 @@ def test_a_png_is_exported_while_the_window_draws(desk, picture: Path, tmp_path:
     desk.host.until(lambda: not desk.app.session.exporting, "the export")
     assert str(tmp_path / "out.png") in desk.host.said()
     with Image.open(tmp_path / "out.png") as out:
-        assert out.width == round(120 / 25.4 * 600)
+        assert out.width == round(120 / 25.4 * 300)
         assert out.convert("L").resize((60, 45)).getextrema()[0] < 200
     page = np.s_[:660, 300:]
     before, drawn = desk.host.screenshot()[page], desk.app.editor.canvas.n_drawn
@@ -247,12 +247,12 @@ def test_an_unknown_ending_is_one_line(desk, picture: Path, tmp_path: Path) -> N
     open_and_finish(desk, picture)
     desk.host.key("e", ctrl=True)
     desk.host.fill("path", str(tmp_path / "out.doc"))
-    dialogs = desk.app.editor.popups.dialogs
-    assert ".doc is no ending" in dialogs._own.problem
-    assert dialogs._own.text == str(tmp_path / "out.doc")  # to be mended
+    dialog = desk.app.editor.popups.exporting
+    assert ".doc is no ending" in dialog.problem
+    assert dialog.choices.path == str(tmp_path / "out.doc")  # to be mended
     assert not (tmp_path / "out.doc").exists()
     desk.host.key("escape")
-    assert not dialogs.is_open
+    assert not dialog.is_open
 
 
 def test_a_faulty_panel_is_told_and_the_editor_lives_on(

@@ -13,8 +13,9 @@ import pytest
 from stippler.drawing.adjustment import Adjustment
 from stippler.drawing.style import Style
 from stippler.errors import PictureError, StipplerError
-from stippler.jobs import work
-from stippler.jobs.work import Source, stipple_picture
+from stippler.jobs import preparing
+from stippler.jobs.stippling import stipple_picture
+from stippler.jobs.work import Source
 
 STYLE = Style(n_dots=100, iterations=2, spacing="lloyd")
 
@@ -28,7 +29,7 @@ def fake_compiler(monkeypatch: pytest.MonkeyPatch, program: str) -> list[subproc
         begun.append(real([sys.executable, "-c", program], **options))
         return begun[-1]
 
-    monkeypatch.setattr(work.subprocess, "Popen", popen)
+    monkeypatch.setattr(preparing.subprocess, "Popen", popen)
     return begun
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from stippler.editor.events import LEFT, Event, KeyDown, Moved, Pressed
 from stippler.editor.messages import WARNING
+from stippler.editor.tools.line_nodes import LineNodes
 from stippler.editor.tools.node_index import NodeIndex, Owned
 from stippler.editor.tools.node_source import BorderNodes, Node, NodeSource, Trial
 from stippler.editor.tools.node_states import Boxing, Dragging
@@ -28,7 +29,7 @@ from stippler.errors import GeometryError
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
 
-SOURCES: tuple[type[NodeSource], ...] = (BorderNodes,)
+SOURCES: tuple[type[NodeSource], ...] = (LineNodes, BorderNodes)
 """What has nodes; where several lie in one place the first has the pointer."""
 
 NODE_PX, HANDLE_PX, PIECE_PX = 8.0, 8.0, 6.0
@@ -75,9 +76,9 @@ class NodeTool(Tool):
 
     name, label, key = "nodes", "Nodes", "Shift+N"
     tip = (
-        "Edits borders: drag a node, a handle or the border between two nodes; all areas there "
-        "follow. Shift chooses several, dragging beside chooses by a box. A double click adds a "
-        "node, Delete removes. Alt breaks a smooth node, or keeps from snapping."
+        "Edits borders and lines: drag a node, a handle or what lies between two nodes; all "
+        "areas there follow. Shift chooses several, dragging beside chooses by a box. A double "
+        "click adds a node, Delete removes. Alt breaks a smooth node, or keeps from snapping."
     )
     commands = (
         "nodes.smooth", "nodes.corner", "nodes.add", "nodes.remove", "nodes.none",

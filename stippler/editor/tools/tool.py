@@ -8,11 +8,12 @@ are made within a stroke of its document, so every state can be cancelled withou
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from stippler.brushes.kinds import Parameter, Value
 from stippler.editor.events import NO_MODS, Event, KeyDown, Mods, Moved, Pressed, Released, Scrolled
+from stippler.editor.tools.line_choice import ChosenLines
 
 if TYPE_CHECKING:
     from stippler.brushes.brush import Brush
@@ -48,6 +49,8 @@ class Desk:
         Another seed for each stroke.
     say : callable
         Tells the person a line, with how grave it is (`editor.messages`).
+    lines : ChosenLines
+        The chosen lines.
     """
 
     document: Document
@@ -59,6 +62,7 @@ class Desk:
     areas: AreaChoice
     mods: Mods = NO_MODS
     heading_rad: float = float("nan")
+    lines: ChosenLines = field(default_factory=ChosenLines)
 
     def at(self, event: Moved | Pressed | Released | Scrolled) -> Point:
         """Return where on the page an event was."""
@@ -93,6 +97,7 @@ class Sight:
     mm: float
     mods: Mods = NO_MODS
     is_held: bool = False
+    lines: ChosenLines = field(default_factory=ChosenLines)
 
 
 @dataclass(frozen=True, slots=True)

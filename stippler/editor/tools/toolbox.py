@@ -28,6 +28,8 @@ from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
 from stippler.editor.tools.bucket_tool import BucketTool
 from stippler.editor.tools.knife_tool import KnifeTool
+from stippler.editor.tools.line_choice import ChosenLines
+from stippler.editor.tools.line_tool import LineTool
 from stippler.editor.tools.node_tool import NodeTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
@@ -48,7 +50,7 @@ def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
     """Make every tool, in the order of the strip; a new one is a line here."""
     brushes = (BrushTool(kind, shelf) for kind in KINDS)
     areas = (AreaTool(), KnifeTool(), BucketTool(), NodeTool())
-    return (*brushes, SelectTool(), *areas)
+    return (*brushes, SelectTool(), *areas, LineTool())
 
 
 class Toolbox:
@@ -69,6 +71,7 @@ class Toolbox:
         The one at hand; without one the pointer only looks around.
     shelf : BrushShelf
     selection : Selection
+    lines : ChosenLines
     areas : AreaChoice
     state : ToolState
     """
@@ -82,6 +85,7 @@ class Toolbox:
         self._by_name = {tool.name: tool for tool in self.tools}
         self.tool: Tool | None = None
         self.selection = Selection()
+        self.lines = ChosenLines()
         self.areas = AreaChoice()
         self.state: ToolState = RESTING
         self.mods = NO_MODS
@@ -180,6 +184,7 @@ class Toolbox:
             1.0 / px_per_mm,
             self.mods,
             is_held=self.is_busy,
+            lines=self.lines,
         )
         own, held = self.tool.overlay(sight), self.state.overlay
         return Overlay(own.paths + held.paths, own.handles + held.handles, held.tip or own.tip)
@@ -242,6 +247,7 @@ class Toolbox:
         for tool in self.tools:
             tool.forget()
         self.selection.forget()
+        self.lines.choose(None)
         self.areas.forget()
 
     def preview(self, at_mm: Point, reference: Reference | None) -> Preview | None:
@@ -264,6 +270,7 @@ class Toolbox:
             self.areas,
             self.mods,
             self._heading_rad,
+            self.lines,
         )
 
     def _note_mods(self, event: Event) -> None:

@@ -17,7 +17,10 @@ MAX_DECIMALS = 6
 PLATE = (
     Option("profile", None, "What a publisher asks for: width, dpi, bits.", kind=str),
     Option("column", None, "Which of the profile's widths: column, page.", kind=str),
-    Option("print_width", None, "Width of the drawing in print.", "mm", 1, 10_000, kind=float),
+    Option(
+        "print_width", None, "Width of the drawing in print.", "mm", 1, 10_000, kind=float,
+        label="Width",
+    ),
     Option(
         "one_line",
         NONE,
@@ -32,6 +35,7 @@ PLATE = (
         low=1e-6,
         high=1e6,
         kind=float,
+        label="Life size ×",
     ),
     Option("marks", NONE, "Marks to cut and to register by.", choices=(NONE, CROP, ALL)),
     Option("caption", "", "Text under the drawing."),
@@ -45,7 +49,9 @@ PLATE = (
 """Options of every picture."""
 
 _DPI = "Pixels an inch."
-_SORT = Option("sort", False, "Dots in an order of little travel, for plotters and lasers.")
+_SORT = Option(
+    "sort", False, "Dots in an order of little travel, for plotters and lasers.", label="Short ways"
+)
 _SVG = (
     Option(
         "round_dots",
@@ -54,15 +60,16 @@ _SVG = (
         choices=(CIRCLES, COMPOUND, TAPS),
     ),
     Option("decimals", None, "Decimals of positions in mm.", low=0, high=MAX_DECIMALS, kind=int),
-    Option("paper", True, "White paper behind the dots; plotters never see it."),
+    Option("paper", True, "White paper behind the dots; plotters never see it.",
+           label="White paper"),
     _SORT,
-)
+)  # fmt: skip
 _PLOTTING = (
     Option("pen_width", 0.3, "Width of the pen's line.", "mm", 0.01, 10),
     Option("feed", 2000.0, "Speed of drawing.", "mm/min", 1, 100_000),
     Option("travel", 6000.0, "Speed above the paper.", "mm/min", 1, 100_000),
     Option("lift_time", 0.15, "Time to lower and lift the pen.", "s", 0, 60),
-    Option("sort", True, "Dots in an order of little travel."),
+    Option("sort", True, "Dots in an order of little travel.", label="Short ways"),
 )
 _GCODE = (
     *_PLOTTING,
@@ -80,7 +87,7 @@ TIFF = Format(
     "journals",
     "tiff.chunks",
     (
-        Option("dpi", 1200.0, _DPI, "dpi", 10, 9600),
+        Option("dpi", 1200.0, _DPI, "dpi", 10, 9600, label="Resolution"),
         Option("bits", "1", "1: black or white; 8: grey edges.", choices=("1", "8")),
     ),
 )
@@ -90,8 +97,8 @@ PNG = Format(
     "screens",
     "png.chunks",
     (
-        Option("dpi", 300.0, _DPI, "dpi", 1e-3, 9600),
-        Option("transparent", False, "Clear ground instead of white."),
+        Option("dpi", 300.0, _DPI, "dpi", 1e-3, 9600, label="Resolution"),
+        Option("transparent", False, "Clear ground instead of white.", label="Clear ground"),
     ),
 )
 CSV = Format("CSV", (".csv",), "scripts", "table.csv_of", is_data=True)

@@ -32,6 +32,8 @@ class Option:
         What a text may be; empty: anything.
     kind : type, optional
         Where the default is None.
+    label : str
+        In dialogs, where the name is not to be it.
     """
 
     name: str
@@ -42,6 +44,12 @@ class Option:
     high: float = math.inf
     choices: tuple[str, ...] = ()
     kind: type | None = None
+    label: str = ""
+
+    @property
+    def title(self) -> str:
+        """What stands before it in a dialog."""
+        return self.label or self.name.replace("_", " ").capitalize()
 
     @property
     def type(self) -> type:

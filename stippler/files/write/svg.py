@@ -38,7 +38,7 @@ TAP_MM = 0.01  # pen taps are lines of this length, which no plotter program dro
 SEGMENTS = ((ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
 _BLOCK = 8192
 _PATH_BLOCK = 2048  # their text is made in room that stays in the cache
-_PATH_DECIMALS = 1  # more than positions get
+_LINE_DECIMALS = 1  # of lines and shapes, more than positions get
 _RADIUS_DECIMALS = 1
 _MANY = 2_000  # round dots whose circles are in units of the last decimal: no points, fewer bytes
 _WHOLE_RADIUS = 100  # such units: radii of so many are whole, with the ink kept on average
@@ -65,8 +65,8 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
     Parameters
     ----------
     values : mapping
-        Of the format's options. `decimals` of positions in mm; radii and outlines get one more.
-        None: 2, or as many as keep within 5 % of the smallest radius.
+        Of the format's options. `decimals` of positions and of dots' outlines in mm; radii, lines
+        and shapes get one more. None: 3, or as many as keep within 1 % of the smallest radius.
 
     Yields
     ------
@@ -174,7 +174,7 @@ def _path(points: NDArray[np.float64], decimals: int) -> str:
 
 
 def _shape(shape: Shape, decimals: int, color: str = "") -> bytes:
-    rings = "".join(_path(ring, decimals + _PATH_DECIMALS) + "z" for ring in shape.rings_mm)
+    rings = "".join(_path(ring, decimals + _LINE_DECIMALS) + "z" for ring in shape.rings_mm)
     return f'<path{color} fill-rule="evenodd" d="{rings}"/>\n'.encode()
 
 
@@ -182,7 +182,7 @@ def _line(line: Line, decimals: int) -> bytes:
     points = line.points_mm
     if len(points) == 1:
         points = np.vstack([points, points])
-    d = _path(points, decimals + _PATH_DECIMALS) + ("z" if line.closed else "")
+    d = _path(points, decimals + _LINE_DECIMALS) + ("z" if line.closed else "")
     return f'<path stroke-width="{number(line.width_mm)}" d="{d}"/>\n'.encode()
 
 
@@ -195,13 +195,12 @@ def _dots(dots: Dots, decimals: int, round_dots: str, color: str) -> Iterator[by
         draw = _strokes if round_dots == COMPOUND else _taps
         yield from draw(dots.take(is_round), decimals)
         yield b"</g>\n"
-    finer = min(decimals + _PATH_DECIMALS, MAX_DECIMALS)
     for some in _blocks(smooth, _PATH_BLOCK):
-        yield svg_text.paths(dots.take(some), SEGMENTS[0][1], finer)
+        yield svg_text.paths(dots.take(some), SEGMENTS[0][1], decimals)
     roughness = dots.roughness[rough]
     for (above, _), (limit, n_segments) in pairwise(SEGMENTS):
         for some in _blocks(rough[(roughness > above) & (roughness <= limit)], _PATH_BLOCK):
-            yield svg_text.paths(dots.take(some), n_segments, finer)
+            yield svg_text.paths(dots.take(some), n_segments, decimals)
 
 
 def _circles(dots: Dots, rows: NDArray[np.intp], decimals: int) -> Iterator[bytes]:
@@ -225,9 +224,10 @@ def _circles(dots: Dots, rows: NDArray[np.intp], decimals: int) -> Iterator[byte
 
 def _whole(radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """Round up or down in turns, so that radii are the same on average: dots of one size, too."""
-    turns = (np.arange(len(radius)) * _GOLDEN) % 1.0
+    turns = np.arange(len(radius)) * _GOLDEN
+    turns -= np.floor(turns)
     exact = np.round(radius, 2)  # what single precision adds to a whole number is not rounded up
-    return np.asarray(np.where(exact == np.rint(exact), exact, np.floor(exact + turns)))
+    return np.asarray(np.floor(exact + np.minimum(turns, 0.999)))
 
 
 def _strokes(dots: Dots, decimals: int) -> Iterator[bytes]:

@@ -26,7 +26,10 @@ _SHORT, _LONG, _RATIONAL = 3, 4, 5
 
 
 def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
-    """Yield a sheet as TIFF: all strips are packed before the first byte is known."""
+    """Yield a sheet as TIFF: all strips are packed before the first byte is known.
+
+    Until then empty pieces are yielded.
+    """
     dpi, bits = float(values["dpi"]), int(values["bits"])
     size = size_px(sheet, dpi)
     compression = _GROUP_4 if bits == 1 else _LZW
@@ -35,6 +38,7 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
     for pixels in bit_strips(sheet, dpi) if bits == 1 else grey_strips(sheet, dpi):
         rows = rows or len(pixels)
         strips.append(_packed(pixels, size.width, compression))
+        yield b""  # nothing is known yet; whoever writes may end it here
     yield from _file(strips, size, rows, bits, compression, dpi)
 
 

@@ -44,12 +44,12 @@ def _pack_shape(row, elongation, angle, roughness, seed, flags):
 
 @kernel
 def _pack(
-    start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, fixed,
+    start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, constraint,
     selected, place, shape,
 ):  # fmt: skip
     for k in range(start, stop):
         i = rows[k]
-        flags = (FIXED if fixed[i] else 0) | (SELECTED if selected[i] else 0)
+        flags = (FIXED if constraint[i] != 0 else 0) | (SELECTED if selected[i] else 0)
         _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
         _pack_shape(shape[k], elongation[i], angle[i], roughness[i], seed[i], flags)
 
@@ -151,8 +151,8 @@ def pack(
     """Pack the given rows of dots into consecutive rows of `out`; `selected` is of all dots."""
     parallel_for(
         _pack, len(out), rows, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
-        dots.angle_rad, dots.roughness, dots.seed, dots.fixed, selected, out.view(np.float32), out,
-        grain=_GRAIN,
+        dots.angle_rad, dots.roughness, dots.seed, dots.constraint, selected, out.view(np.float32),
+        out, grain=_GRAIN,
     )  # fmt: skip
 
 

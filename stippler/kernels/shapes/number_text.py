@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,24 +35,33 @@ def put_number(out, at, value, decimals):
         value = -value
     if decimals == 3 and value < 10000:
         return _put_small(out, at, np.uint32(value))
-    while decimals > 0 and value % 10 == 0:
-        value //= 10
+    if value < 4294967296:
+        return _put_digits(out, at, np.uint32(value), np.uint32(10), decimals)
+    return _put_digits(out, at, np.uint64(value), np.uint64(10), decimals)
+
+
+@inline
+def _put_digits(out, at, value, ten, decimals):
+    """Write a positive number; the narrower its type, the faster."""
+    above = value // ten
+    while decimals > 0 and above * ten == value:
+        value = above
+        above = value // ten
         decimals -= 1
-    n = decimals
-    rest = value
-    for _ in range(decimals):
-        rest //= 10
+    n, rest = np.int64(1), above
     while rest > 0:
-        rest //= 10
+        rest = rest // ten
         n += 1
+    n = max(n, decimals)
     end = at + n + (1 if decimals > 0 else 0)
     p = end - 1
     for i in range(n):
         if decimals > 0 and i == decimals:
             out[p] = 46
             p -= 1
-        out[p] = 48 + value % 10
-        value //= 10
+        above = value // ten
+        out[p] = np.uint32(48) + np.uint32(value - above * ten)
+        value = above
         p -= 1
     if p == at:  # the point in front
         out[p] = 46
@@ -84,38 +94,36 @@ def _put_small(out, at, value):
 
 
 @kernel
-def _write_rows(start, stop, values, decimals, pieces, piece_end, kinds, out, length):
+def _write_rows(start, stop, values, decimals, pieces, piece_end, kinds, room, out, used):
     n = values.shape[1]
+    scale = 10.0**decimals
+    at = start * room
     for i in range(start, stop):
-        row = out[i]
-        at = 0
         first = np.int64(kinds[i]) * (n + 1)
         for k in range(n + 1):
             for j in range(piece_end[first + k], piece_end[first + k + 1]):
-                row[at] = pieces[j]
+                out[at] = pieces[j]
                 at += 1
             if k < n:
-                scaled = np.int64(math.floor(values[i, k] * 10.0 ** decimals[k] + 0.5))
-                at = put_number(row, at, scaled, decimals[k])
-        length[i] = at
+                scaled = np.int64(math.floor(values[i, k] * scale[k] + 0.5))
+                at = put_number(out, at, scaled, decimals[k])
+    used[start] = at - start * room
 
 
-@kernel
-def _join(start, stop, rows, length, offset, out):
-    for i in range(start, stop):
-        at = offset[i] - length[i]
-        for j in range(length[i]):
-            out[at + j] = rows[i, j]
+def written(kernel: Callable[..., Any], n: int, room: int, *args: Any, grain: int = 2048) -> bytes:
+    """Return the text of n rows that a range kernel writes.
 
-
-def joined(rows: NDArray[np.uint8], length: NDArray[np.int64]) -> bytes:
-    """Return the used parts of all rows, one after another."""
-    if not len(rows):
-        return b""
-    offset = np.cumsum(length)
-    out = np.empty(int(offset[-1]), np.uint8)
-    parallel_for(_join, len(rows), rows, length, offset, out, grain=2048)
-    return out.tobytes()
+    Parameters
+    ----------
+    kernel : callable
+        ``kernel(start, stop, *args, room, out, used)`` writes its rows one after another from
+        ``out[start * room]`` on, and how many bytes they take to ``used[start]``.
+    room : int
+        Bytes that no row is longer than.
+    """
+    out, used = np.empty(n * room, np.uint8), np.zeros(n, np.int64)
+    parallel_for(kernel, n, *args, room, out, used, grain=grain)
+    return b"".join(out[i * room : i * room + used[i]].data for i in np.flatnonzero(used).tolist())
 
 
 def number_rows(
@@ -147,9 +155,7 @@ def number_rows_of_kinds(
     every = [piece for some in pieces for piece in some]
     longest = max(sum(map(len, some)) for some in pieces)
     ends = np.cumsum([0, *map(len, every)])
-    rows = np.empty((len(values), longest + len(columns) * MAX_NUMBER), np.uint8)
-    length = np.empty(len(rows), np.int64)
     text = np.frombuffer(b"".join(every), np.uint8)
     places = np.array(decimals, np.int64)
-    parallel_for(_write_rows, len(rows), values, places, text, ends, kinds, rows, length)
-    return joined(rows, length)
+    room = longest + len(columns) * MAX_NUMBER
+    return written(_write_rows, len(values), room, values, places, text, ends, kinds)

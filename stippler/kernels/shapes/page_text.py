@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from stippler.kernels.machine.jit import inline, kernel
-from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.shapes.dot_shape import ShapedDots, bezier_outlines
-from stippler.kernels.shapes.number_text import MAX_NUMBER, joined, put_number
+from stippler.kernels.shapes.number_text import MAX_NUMBER, put_number, written
 
 _SPACE, _C, _F, _M, _NEWLINE = 32, 99, 102, 109, 10
 
@@ -24,32 +23,30 @@ def _put_point(out, at, x, y, scale, decimals):
 
 
 @kernel
-def _write_chains(start, stop, chain, decimals, out, length):
+def _write_chains(start, stop, chain, decimals, room, out, used):
     scale = 10.0**decimals
     m = chain.shape[1]
+    at = start * room
     for i in range(start, stop):
-        row = out[i]
-        at = _put_point(row, 0, chain[i, 0, 0], chain[i, 0, 1], scale, decimals)
-        row[at] = _M
-        row[at + 1] = _NEWLINE
+        at = _put_point(out, at, chain[i, 0, 0], chain[i, 0, 1], scale, decimals)
+        out[at] = _M
+        out[at + 1] = _NEWLINE
         at += 2
         for j in range(1, m + 1):
             k = j if j < m else 0
-            at = _put_point(row, at, chain[i, k, 0], chain[i, k, 1], scale, decimals)
+            at = _put_point(out, at, chain[i, k, 0], chain[i, k, 1], scale, decimals)
             if j % 3 == 0:
-                row[at] = _C
-                row[at + 1] = _NEWLINE
+                out[at] = _C
+                out[at + 1] = _NEWLINE
                 at += 2
-        row[at] = _F
-        row[at + 1] = _NEWLINE
-        length[i] = at + 2
+        out[at] = _F
+        out[at + 1] = _NEWLINE
+        at += 2
+    used[start] = at - start * room
 
 
 def filled_outlines(dots: ShapedDots, n_segments: int, decimals: int) -> bytes:
     """Return ``x y m``, Bezier segments ``... c``, and ``f`` for each dot."""
     chain = bezier_outlines(dots, n_segments)
     room = (2 + 6 * n_segments) * (MAX_NUMBER + 1) + 2 * n_segments + 8
-    rows = np.empty((len(chain), room), np.uint8)
-    length = np.empty(len(rows), np.int64)
-    parallel_for(_write_chains, len(rows), chain, decimals, rows, length, grain=256)
-    return joined(rows, length)
+    return written(_write_chains, len(chain), room, chain, decimals, grain=256)

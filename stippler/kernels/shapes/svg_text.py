@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.machine.jit import inline, kernel
-from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.shapes.dot_shape import ShapedDots, bezier_outlines
 from stippler.kernels.shapes.number_text import (
     MAX_NUMBER,
-    joined,
     number_rows,
     put,
     put_number,
+    written,
 )
 
 _CIRCLE = (b'<circle cx="', b'" cy="', b'" r="', b'"/>')
@@ -34,20 +33,20 @@ def _put_step(out, at, value, decimals):
 
 
 @kernel
-def _write_paths(start, stop, chain, decimals, out, length):
+def _write_paths(start, stop, chain, decimals, room, out, used):
     """Write chains of Bezier segments; the first as ``c``, the others as ``s``.
 
     All steps are between rounded points, so rounding does not add up along the outline.
     """
     scale = 10.0**decimals
     m = chain.shape[1]
+    at = start * room
     for i in range(start, stop):
-        row = out[i]
-        at = put(row, 0, _D)
+        at = put(out, at, _D)
         x = np.int64(math.floor(chain[i, 0, 0] * scale + 0.5))
         y = np.int64(math.floor(chain[i, 0, 1] * scale + 0.5))
-        at = put_number(row, at, x, decimals)
-        at = _put_step(row, at, y, decimals)
+        at = put_number(out, at, x, decimals)
+        at = _put_step(out, at, y, decimals)
         for j in range(1, m + 1):
             if j % 3 == 1 and j > 1:
                 continue  # what s reflects
@@ -55,14 +54,15 @@ def _write_paths(start, stop, chain, decimals, out, length):
             px = np.int64(math.floor(chain[i, k, 0] * scale + 0.5))
             py = np.int64(math.floor(chain[i, k, 1] * scale + 0.5))
             if j == 1 or j == 5:
-                row[at] = 99 if j == 1 else 115
-                at = put_number(row, at + 1, px - x, decimals)
+                out[at] = 99 if j == 1 else 115
+                at = put_number(out, at + 1, px - x, decimals)
             else:
-                at = _put_step(row, at, px - x, decimals)
-            at = _put_step(row, at, py - y, decimals)
+                at = _put_step(out, at, px - x, decimals)
+            at = _put_step(out, at, py - y, decimals)
             if j % 3 == 0:
                 x, y = px, py
-        length[i] = put(row, at, _Z)
+        at = put(out, at, _Z)
+    used[start] = at - start * room
 
 
 def circles(
@@ -80,26 +80,21 @@ def paths(dots: ShapedDots, n_segments: int, decimals: int) -> bytes:
     """Return a closed ``<path>`` a line for each dot."""
     chain = bezier_outlines(dots, n_segments)
     room = len(_D) + len(_Z) + (2 + 6 + 4 * n_segments) * (MAX_NUMBER + 1)
-    rows = np.empty((len(chain), room), np.uint8)
-    length = np.empty(len(rows), np.int64)
-    parallel_for(_write_paths, len(rows), chain, decimals, rows, length, grain=256)
-    return joined(rows, length)
+    return written(_write_paths, len(chain), room, chain, decimals, grain=256)
 
 
 @kernel
-def _write_moves(start, stop, steps, decimals, out, length):
+def _write_moves(start, stop, steps, decimals, room, out, used):
     scale = 10.0**decimals
+    at = start * room
     for i in range(start, stop):
-        row = out[i]
-        row[0] = 109
-        at = put_number(row, 1, np.int64(math.floor(steps[i, 0] * scale + 0.5)), decimals)
-        at = _put_step(row, at, np.int64(math.floor(steps[i, 1] * scale + 0.5)), decimals)
-        length[i] = put(row, at, _H0)
+        out[at] = 109
+        at = put_number(out, at + 1, np.int64(math.floor(steps[i, 0] * scale + 0.5)), decimals)
+        at = _put_step(out, at, np.int64(math.floor(steps[i, 1] * scale + 0.5)), decimals)
+        at = put(out, at, _H0)
+    used[start] = at - start * room
 
 
 def relative_moves(steps: NDArray[np.float64], decimals: int) -> bytes:
     """Return a step and a line of no length for each dot of a path."""
-    rows = np.empty((len(steps), 2 * MAX_NUMBER + 5), np.uint8)
-    length = np.empty(len(rows), np.int64)
-    parallel_for(_write_moves, len(rows), steps, decimals, rows, length)
-    return joined(rows, length)
+    return written(_write_moves, len(steps), 2 * MAX_NUMBER + 5, steps, decimals)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from stippler.editor.commands import Commands
 from stippler.ui.actions.areas import area_commands
 from stippler.ui.actions.files import edit_commands, file_commands, help_commands, work_commands
+from stippler.ui.actions.lines import line_commands
 from stippler.ui.actions.nodes import node_commands
 from stippler.ui.actions.parts import Parts
 from stippler.ui.actions.tools import selection_commands, tool_commands
@@ -20,6 +21,7 @@ def commands_for(parts: Parts) -> Commands:
         edit_commands,
         selection_commands,
         work_commands,
+        line_commands,
         area_commands,
         node_commands,
         tool_commands,

@@ -91,6 +91,7 @@ def work_commands(parts: Parts) -> Iterator[Command]:
 def _print_commands(parts: Parts) -> Iterator[Command]:
     session = parts.session
     check = PrintCheck(session, parts.painting, parts.view)
+    parts.popups.exporting.print_check = check
 
     def has_dots() -> bool:
         return session.paintable and session.n_dots > 0

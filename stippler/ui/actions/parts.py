@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from stippler.editor.area_acts import AreaActs
+from stippler.editor.lines import Lines
 from stippler.editor.painting import Painting
 from stippler.editor.pointer import Pointer
 from stippler.editor.selecting import Selecting
@@ -39,6 +40,7 @@ class Parts:
     session: Session
     painting: Painting
     selecting: Selecting
+    lines: Lines
     area_acts: AreaActs
     pointer: Pointer
     view: View

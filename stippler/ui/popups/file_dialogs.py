@@ -65,6 +65,7 @@ class _Own:
     endings: tuple[str, ...]
     take: Callable[[Path], None]
     writes: bool = False
+    name: str = ""
     problem: str = ""
     fresh: bool = True
     listed: tuple[Path, tuple[Path, ...]] | None = None
@@ -109,11 +110,25 @@ class Dialogs:
         else:
             self._own = _Own("Open a picture or a drawing", "Open", f"{folder}/", OPENED, take)
 
-    def ask_export(
-        self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]
-    ) -> None:
-        """Ask where to write the drawing; a file that is there is not replaced unasked."""
-        self._ask_output("Export the drawing", "Export", path, endings, take)
+    def ask_place(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
+        """Ask where to write a file, by its folder and name; whether to replace is not asked."""
+        if self.is_open:
+            return
+        if self._use_native:
+            patterns = " ".join(f"*{ending}" for ending in endings)
+            asked = native.save_file(
+                "Export the drawing", str(path), ["Drawings", patterns], native.opt.force_overwrite
+            )
+            self._native = _Native(asked, take)
+        else:
+            self._own = _Own(
+                "Where to export to", "Choose", str(path), endings, take, writes=True,
+                name=path.name,
+            )  # fmt: skip
+
+    def ask_replace(self, path: Path, take: Callable[[Path], None]) -> None:
+        """Ask whether a file may be replaced."""
+        self._confirm, self._asked = (path, take), None
 
     def _ask_output(
         self,
@@ -201,7 +216,7 @@ class Dialogs:
             imgui.close_current_popup()
         imgui.end_popup()
         if chosen is not None and chosen.is_dir():
-            own.text, own.fresh, own.problem = f"{chosen}/", True, ""
+            own.text, own.fresh, own.problem = f"{chosen}/{own.name}", True, ""
         elif chosen is not None and not cancelled and not own.problem:
             own.take(chosen)
 
@@ -266,11 +281,11 @@ def _draw_list(widgets: Widgets, own: _Own) -> Path | None:
     height = min(_LIST_HEIGHT * widgets.scale, max(room, _LEAST_LIST * widgets.scale))
     imgui.begin_child("##files", (0.0, height), imgui.ChildFlags_.frame_style)
     if folder.parent != folder and imgui.selectable("..", False)[0]:
-        own.text = f"{folder.parent}/".replace("//", "/")
+        own.text = f"{folder.parent}/".replace("//", "/") + own.name
     for path in own.listed[1]:
         label = f"{path.name}/" if path.is_dir() else path.name
         if imgui.selectable(label, path == typed, imgui.SelectableFlags_.allow_double_click)[0]:
-            own.text = f"{path}/" if path.is_dir() else str(path)
+            own.text = f"{path}/{own.name}" if path.is_dir() else str(path)
             if imgui.is_mouse_double_clicked(imgui.MouseButton_.left) and not path.is_dir():
                 chosen = path
         widgets.note(label)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stippler.editor.commands import Command
 from stippler.editor.exports import SAVED
@@ -38,6 +38,8 @@ class Filing:
     ) -> None:
         self._session, self._dialogs, self._kept, self._end = session, dialogs, kept, end
         self.guard = Guard(session, self.save, lambda: dialogs.is_open)
+        self.ask_export: Callable[[Path], None] = lambda path: None
+        self._last: tuple[Path, dict[str, Any]] | None = None
         self._noted: Path | None = None
 
     # --- opening ------------------------------------------------------------------------------
@@ -184,7 +186,8 @@ class Filing:
         if path is None or not self._session.n_dots:
             self.export_as()
         else:
-            self._session.export(path, EXPORT_DPI)
+            options = self._last[1] if self._last is not None and self._last[0] == path else None
+            self._session.export(path, EXPORT_DPI, options)
 
     def export_as(self) -> None:
         """Ask where to write the drawing, and write it."""
@@ -192,13 +195,18 @@ class Filing:
         if session.drawing is None or not session.n_dots:
             session.export(Path("drawing.svg"), EXPORT_DPI)  # says why there is nothing to write
             return
-        from stippler.export import ENDINGS
+        self.ask_export(session.exports.path or _first_path(session.source))
 
-        self._dialogs.ask_export(
-            session.exports.path or _first_path(session.source),
-            tuple(ending for ending in ENDINGS if ending != SAVED),
-            lambda path: session.export(path, EXPORT_DPI),
-        )
+    def write(self, path: Path, options: dict[str, Any], expected_bytes: int = 0) -> None:
+        """Write to a file by options of its format; the next time they are used again."""
+        self._last = (path, options)
+        self._session.export(path, EXPORT_DPI, options, expected_bytes=expected_bytes)
+
+    def show_calibration_sheet(self) -> None:
+        """Open the sheet that presses are calibrated by."""
+        from stippler.files.checks import calibration_sheet
+
+        self.guard.then("The calibration sheet", lambda: self._session.show(calibration_sheet()))
 
 
 def _told_of(paths: tuple[Path, ...]) -> str:

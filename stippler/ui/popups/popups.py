@@ -13,6 +13,7 @@ from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
 from stippler.ui.field_commands import FieldCommands
 from stippler.ui.popups.context import ContextPalette
+from stippler.ui.popups.export_dialog import ExportDialog
 from stippler.ui.popups.file_dialogs import Dialogs
 from stippler.ui.popups.filing import Filing
 from stippler.ui.popups.new_page import NewPage
@@ -42,6 +43,10 @@ class Popups:
         self._session, self._kept = session, kept
         self.dialogs = Dialogs(use_native=use_native)
         self.filing = Filing(session, self.dialogs, kept, window.end)
+        self.exporting = ExportDialog(
+            window, session, self.dialogs, self.filing.write, self.filing.show_calibration_sheet
+        )
+        self.filing.ask_export = self.exporting.ask
         self.recovery = RecoveryWindow(
             session.keeping.root, session, window.ctx, window.wake, self.filing.guard.then
         )
@@ -58,6 +63,7 @@ class Popups:
         """Whether one has the keyboard that lets nothing else have it."""
         return (
             self.dialogs.is_open
+            or self.exporting.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
             or self.recovery.is_open
@@ -80,6 +86,7 @@ class Popups:
         assert commands is not None
         guarded("the preferences", lambda: self.preferences.draw(widgets, commands))
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
+        guarded("the export", lambda: self.exporting.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
         guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the question", lambda: self.filing.guard.draw(widgets))

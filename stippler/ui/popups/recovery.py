@@ -40,7 +40,7 @@ class _Entry:
 
     def _look(self) -> None:
         from stippler.files.native.thumbnail import thumbnail
-        from stippler.jobs.work import recovered
+        from stippler.jobs.reading import recovered
 
         try:
             document = recovered(self.lost)

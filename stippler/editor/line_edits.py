@@ -1,0 +1,161 @@
+"""Edits of lines within a stroke of a document: what adheres goes along, others give way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stippler.drawing.dots import FREE, NO_CURVE, ON_CURVE
+
+if TYPE_CHECKING:
+    from stippler.drawing.document import Document
+    from stippler.drawing.line import Line
+    from stippler.drawing.store import Rows
+
+Points = NDArray[np.float64]
+
+
+def lines_of(document: Document) -> dict[int, Line]:
+    """Return the lines of a document by their ids."""
+    from stippler.drawing import records  # late, for the sake of the first frame
+
+    found: dict[int, Line] = document.drawing.table(records.LINE)
+    return found
+
+
+def rows_on(document: Document, k: int) -> Rows:
+    """Return the rows of the dots that a line holds."""
+    dots = document.dots
+    return np.flatnonzero((dots.constraint == ON_CURVE) & (dots.curve == k))
+
+
+def add_line(document: Document, line: Line) -> int:
+    """Add a line; its name gets a number if it has none."""
+    from stippler.drawing import records
+
+    k = document.drawing.first_free(records.LINE)
+    return document.add(records.LINE, line if line.name else replace(line, name=f"line {k}"))
+
+
+def set_line(document: Document, k: int, line: Line | None) -> None:
+    """Change a line, or take it out: dots that it holds go along, or are free from then on."""
+    from stippler.drawing import records
+
+    old = lines_of(document).get(k)
+    document.set(records.LINE, k, line)
+    rows = rows_on(document, k)
+    if not len(rows) or old is None:
+        return
+    if line is None:
+        release(document, rows)
+    elif line.path != old.path:
+        along = document.dots.parameter[rows] * (line.length_mm / old.length_mm)
+        put(document, rows, line, along)
+
+
+def put(document: Document, rows: Rows, line: Line, along: Points) -> None:
+    """Bring dots that a line holds to arc lengths along it; none leaves the page."""
+    at = line.at(along)
+    page = document.drawing.page
+    inside = ((at >= 0.0) & (at <= (page.width_mm, page.height_mm))).all(axis=1)
+    document.change("parameter", rows, along)
+    document.change("position_mm", rows[inside], at[inside])
+    document.own_by_place(rows[inside])
+
+
+def hold(document: Document, rows: Rows, k: int, along: Points) -> None:
+    """Let a line hold dots from now on, at arc lengths along it."""
+    n = len(rows)
+    document.change("constraint", rows, np.full(n, ON_CURVE, np.int8))
+    document.change("curve", rows, np.full(n, k, np.int32))
+    put(document, rows, lines_of(document)[k], along)
+
+
+def release(document: Document, rows: Rows) -> None:
+    """Free dots that lines hold."""
+    n = len(rows)
+    document.change("constraint", rows, np.full(n, FREE, np.int8))
+    document.change("curve", rows, np.full(n, NO_CURVE, np.int32))
+    document.change("parameter", rows, np.zeros(n))
+
+
+def meet(document: Document, k: int) -> int:
+    """Let dots meet a line as it says: line up on it, or keep their distance; return how many did.
+
+    Dots that it held and is to be kept away from are free then.
+    """
+    from stippler.drawing.line import ADHERE, DISTANCE
+
+    line = lines_of(document)[k]
+    if line.meeting == ADHERE:
+        return _line_up(document, k, line)
+    if line.meeting != DISTANCE:
+        return 0
+    if len(held := rows_on(document, k)):
+        release(document, held)
+    return _give_way(document, line)
+
+
+def _near(document: Document, line: Line, reach_mm: float) -> Rows:
+    """Return the rows of free dots about a line, and of those that it could hold."""
+    at, reach = line.path.points_mm, reach_mm + max(line.width_mm) / 2
+    low, high = at.min(axis=0) - reach, at.max(axis=0) + reach
+    rows = document.in_box((float(low[0]), float(low[1]), float(high[0]), float(high[1])))
+    return np.asarray(rows[document.dots.constraint[rows] == FREE])
+
+
+def _line_up(document: Document, k: int, line: Line) -> int:
+    from stippler.stippling.lines import adhere, adhering, spread
+
+    rows, mine = _near(document, line, line.reach_mm), rows_on(document, k)
+    if not len(rows) and not len(mine):
+        return 0
+    found = adhere(adhering([line]), document.dots.position_mm[rows])
+    on = found.line >= 0
+    far = ~on & (found.points != document.dots.position_mm[rows]).any(axis=1)
+    document.move(rows[far], found.points[far])
+    along = np.concatenate([document.dots.parameter[mine], found.along[on]])
+    hold(document, np.concatenate([mine, rows[on]]), k, spread(line, along, tone_of(document)))
+    return int(on.sum() + far.sum())
+
+
+def _give_way(document: Document, line: Line) -> int:
+    from stippler.stippling.lines import keeping_distance
+
+    rows = _near(document, line, line.distance_mm)
+    if not len(rows):
+        return 0
+    before = document.dots.position_mm[rows].copy()
+    moved, _ = keeping_distance([line]).keep_distance(before)
+    far = (moved != before).any(axis=1)
+    document.move(rows[far], moved[far])
+    return int(far.sum())
+
+
+def tone_of(document: Document) -> Callable[[Points], Points] | None:
+    """Return how dense dots are to lie at places, by the reference; None where there is none."""
+    reference = document.drawing.reference
+    if reference is None:
+        return None
+    return lambda points: 0.05 + reference.at(points).astype(np.float64)
+
+
+def spread_held(document: Document) -> int:
+    """Spread all dots that lines hold evenly along them, by the tone; return how many moved."""
+    from stippler.stippling.lines import spread_all
+
+    dots, lines = document.dots, lines_of(document)
+    rows = np.flatnonzero((dots.constraint == ON_CURVE) & np.isin(dots.curve, list(lines)))
+    if not len(rows):
+        return 0
+    ids = sorted(set(dots.curve[rows].tolist()))
+    which = np.searchsorted(ids, dots.curve[rows])
+    before = dots.position_mm[rows].copy()
+    along, _ = spread_all([lines[k] for k in ids], which, dots.parameter[rows], tone_of(document))
+    for j, k in enumerate(ids):
+        put(document, rows[which == j], lines[k], along[which == j])
+    return int((np.abs(document.dots.position_mm[rows] - before) > 1e-9).any(axis=1).sum())

@@ -1,0 +1,93 @@
+"""Processing areas, one after the other; all others stay untouched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from stippler.jobs.work import Work
+
+if TYPE_CHECKING:
+    from stippler.drawing.document import Document
+    from stippler.stippling.progress import Progress
+    from stippler.stippling.task import Task
+    from stippler.stippling.tasks import AreaTask
+
+
+def tasks_of(document: Document, areas: Sequence[int]) -> list[AreaTask]:
+    """Return what stippling some areas of a document takes, one task each.
+
+    Raises
+    ------
+    ParameterError, GeometryError
+        If an area cannot be stippled.
+    """
+    from stippler.stippling.tasks import box_around, stippling
+
+    drawing, partition = document.drawing, document.partition
+    tasks = []
+    for area in areas:
+        near = None
+        if area in drawing.areas and not partition.part_of(area).is_empty:
+            near = document.in_box(box_around(partition.part_of(area)))
+        tasks.append(stippling(drawing, area, partition, near))
+    return tasks
+
+
+def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Iterator[Work]:
+    """Stipple areas one after the other; each result tells of all that are done.
+
+    New dots keep clear of those that were made just before, too.
+    """
+    from stippler.stippling.pipeline import run
+    from stippler.stippling.progress import DONE
+
+    finished: tuple[tuple[int, Progress], ...] = ()
+    for one in tasks:
+        for progress in run(_beside(one, finished), snapshots=snapshots):
+            if progress.stage == DONE:
+                finished = (*finished, (one.area, progress))
+            yield Work(progress.stage, progress.done, progress.total, progress=progress,
+                       area=one.area, finished=finished)  # fmt: skip
+
+
+def _beside(one: AreaTask, finished: Sequence[tuple[int, Progress]]) -> Task:
+    import numpy as np
+
+    neighbours = one.task.neighbours_mm
+    if not finished or neighbours is None:
+        return one.task
+    renewed = [area for area, _ in finished]
+    stay = neighbours[~np.isin(one.neighbour_area, renewed)]
+    return replace(
+        one.task, neighbours_mm=np.concatenate((stay, *(made.position_mm for _, made in finished)))
+    )
+
+
+def process_now(document: Document, areas: Sequence[int]) -> tuple[str, ...]:
+    """Stipple areas of a document, each as a step of its history; return what they fall short of.
+
+    Raises
+    ------
+    ParameterError, GeometryError
+        If an area cannot be stippled; then nothing has changed.
+    """
+    from stippler.stippling.progress import notes_on
+
+    notes: list[str] = []
+    tasks = tasks_of(document, areas)
+    results = list(process_areas(tasks, snapshots=False))
+    for area, made in results[-1].finished if results else ():
+        begin(document, area)
+        document.draft(made.position_mm, made.radius_mm)
+        document.end_draft()
+        notes += notes_on(made, f"area {document.drawing.areas[area].name!r}")
+    return tuple(notes)
+
+
+def begin(document: Document, area: int) -> None:
+    """Begin the draft of an area's new dots; its fixed dots stay."""
+    drawing = document.drawing
+    name = drawing.areas[area].name
+    document.begin_draft(f"Process {name}", area, drawing.style_of(area), keeps_fixed=True)

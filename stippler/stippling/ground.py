@@ -1,0 +1,217 @@
+"""What dots are laid out on: the page with its bleed, or the part of the page that is an area's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from stippler.drawing.partition import Outline
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import MAX_DOTS, Style
+from stippler.kernels.halftone.scan_order import outside_polygon
+from stippler.stippling.compartments import Compartments, Shape
+from stippler.stippling.default_number import with_number
+from stippler.stippling.field_sums import Weights
+from stippler.stippling.halftone import DROPPED
+from stippler.stippling.halftone_area import edges_of
+from stippler.stippling.page_raster import PageRaster
+from stippler.stippling.picture_field import PictureField
+from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.window import Window
+
+Floats = NDArray[np.float64]
+Within = tuple[Compartments, NDArray[np.int32]]
+
+_INSET = 1e-4  # of a pixel; how far within the border a dot lies that was brought back
+_LEAST_SIDE = 48  # pixels a side of an area's window, at least: its outline is cut out of them
+_DOTS_PER_PIXEL = 0.1
+_FEWEST = 500
+
+
+class Ground(Protocol):
+    """Where dots may lie. Points are pixels of `raster` or, where said so, mm from its corner."""
+
+    raster: PageRaster
+    style: Style
+    origin_mm: tuple[float, float]
+
+    @property
+    def outline_mm(self) -> Shape:
+        """What bounds the dots while they are relaxed, in mm from the corner."""
+        ...
+
+    def inside(self, at_mm: Floats) -> Floats:
+        """Bring places in mm from the corner into the outline."""
+        ...
+
+    def ink_field(self) -> Weights:
+        """Return the darkness as a weight, in mm from the corner."""
+        ...
+
+    def on_page(self, at_mm: Floats) -> Floats:
+        """Return where places in mm from the corner lie on the page, read-only."""
+        ...
+
+    def within(self, points: Floats) -> Within | None:
+        """Return the compartments, in pixels, and that of each dot; None is the page."""
+        ...
+
+    def cells(self, points: Floats) -> Tessellation | None:
+        """Return the dots' cells, in pixels, with the ink they ask for; None is the page."""
+        ...
+
+
+class PageGround:
+    """The page; with its bleed, unless the dots to come are just those that are there."""
+
+    origin_mm = (0.0, 0.0)
+
+    def __init__(self, reference: Reference, style: Style, *, with_bleed: bool = True) -> None:
+        self.style = with_number(style, reference)
+        self.raster = raster_for(reference, self.style)
+        w, h = self.raster.size_mm
+        page = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
+        self._outline = self.raster.outline_mm() if with_bleed else page
+
+    @property
+    def outline_mm(self) -> Shape:
+        """The corners of the page, or of its bleed."""
+        return self._outline
+
+    def inside(self, at_mm: Floats) -> Floats:
+        """Bring places onto the page, or its bleed."""
+        return np.clip(at_mm, self._outline[0], self._outline[2])
+
+    def ink_field(self) -> Weights:
+        """Return the darkness as a weight, mirrored in the bleed."""
+        return self.raster.ink_field()
+
+    def on_page(self, at_mm: Floats) -> Floats:
+        """Return the places as they are."""
+        return at_mm
+
+    def within(self, points: Floats) -> Within | None:
+        """Return None: dots at the edge slide along it."""
+        return None
+
+    def cells(self, points: Floats) -> Tessellation | None:
+        """Return None: the cells are the page's."""
+        return None
+
+
+class AreaGround:
+    """The part of the page that is an area's, on the window of the picture that lies under it.
+
+    Parameters
+    ----------
+    reference : Reference
+        Of the whole page; only the window is looked at.
+    outline_mm : shapely Polygon or MultiPolygon
+        On the page.
+    """
+
+    def __init__(self, reference: Reference, style: Style, outline_mm: Outline) -> None:
+        box = outline_mm.bounds
+        n_box = _number_in_box(style, outline_mm)
+        window = Window.of(reference, box, n_box)
+        self.origin_mm = window.origin_mm
+        self._outline = shapely.transform(outline_mm, lambda xy: xy - window.origin_mm)
+        k = _division(window.darkness.shape, n_box)
+        masked = np.repeat(np.repeat(window.darkness, k, 0), k, 1)
+        pixel_mm = window.pixel_mm / k
+        outside_polygon(edges_of(self._outline) / pixel_mm, masked)
+        local = Reference(masked, pixel_mm * masked.shape[1])
+        page_mm2 = reference.width_mm * reference.height_mm
+        self.style = with_number(style, local, page_mm2)
+        self.raster = raster_for(local, self.style, bleeds=False)
+        x0, y0 = self.origin_mm
+        self._field = replace(PictureField.of(reference), origin_mm=(-x0, -y0))
+        self._parts = Compartments.of(shapely.transform(self._outline, self._to_px))
+        self._on_page = outline_mm
+        shapely.prepare([self._outline, outline_mm])
+
+    def _to_px(self, xy: Floats) -> Floats:
+        return np.asarray(xy / self.raster.pixel_mm)
+
+    @property
+    def outline_mm(self) -> Shape:
+        """The area's, from the window's corner."""
+        return self._outline
+
+    def inside(self, at_mm: Floats) -> Floats:
+        """Bring places that lie outside just within the border next to them."""
+        out = np.flatnonzero(~shapely.contains_xy(self._outline, at_mm[:, 0], at_mm[:, 1]))
+        if not len(out):
+            return at_mm
+        at = at_mm.copy()
+        at[out] = brought_into(self._outline, at_mm[out], _INSET * self.raster.pixel_mm)
+        return at
+
+    def ink_field(self) -> Weights:
+        """Return the darkness as a weight; cells are cut at the border, it is not."""
+        return self._field
+
+    def on_page(self, at_mm: Floats) -> Floats:
+        """Return where places in mm from the corner lie on the page: within the outline there."""
+        at: Floats = at_mm + np.array(self.origin_mm)
+        out = np.flatnonzero(~shapely.contains_xy(self._on_page, at[:, 0], at[:, 1]))
+        if len(out):
+            at[out] = brought_into(self._on_page, at[out], _INSET * self.raster.pixel_mm)
+        at.flags.writeable = False
+        return at
+
+    def within(self, points: Floats) -> Within | None:
+        """Return the parts of the area, and that of each dot."""
+        return self._parts, self._parts.find(points, None)
+
+    def cells(self, points: Floats) -> Tessellation | None:
+        """Return the dots' cells, cut at the border."""
+        side = self.raster.pixel_mm
+        (w, h), (x, y) = self._field.pixel_mm, self._field.origin_mm
+        field = replace(self._field, pixel_mm=(w / side, h / side), origin_mm=(x / side, y / side))
+        return Tessellation.of(points, list(self._parts.polygons), None, field)
+
+
+def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> PageRaster:
+    """Prepare the raster that a style lays its dots out on."""
+    by_region = style.sizes == "regions"
+    return PageRaster.of(
+        reference,
+        style.n_dots,
+        style.size_range_mm,
+        bleeds=bleeds and style.weighted and not by_region,
+        faintest=DROPPED if by_region else None,
+    )
+
+
+def _number_in_box(style: Style, outline_mm: Outline) -> int:
+    """Return how many dots an area's box would have, about: its window is as fine as they ask."""
+    x0, y0, x1, y1 = outline_mm.bounds
+    n_dots = float(style.n_dots or 0)
+    if style.size_range_mm is not None and not n_dots:
+        n_dots = outline_mm.area / (math.pi * style.size_range_mm[0] ** 2)
+    share = (x1 - x0) * (y1 - y0) / max(outline_mm.area, 1e-12)
+    return max(int(min(n_dots * share, 4.0 * MAX_DOTS)), _FEWEST)
+
+
+def _division(shape: tuple[int, ...], n_box: int) -> int:
+    """Return by how much pixels are divided: an outline is cut out of whole ones."""
+    per_dot = math.sqrt(n_box / (_DOTS_PER_PIXEL * shape[0] * shape[1]))
+    return max(math.ceil(per_dot), math.ceil(_LEAST_SIDE / min(shape)))
+
+
+def brought_into(outline: Outline, at: Floats, inset: float) -> Floats:
+    """Return the places within an outline next to places outside, so far within its border."""
+    inner = outline
+    for share in (1.0, 0.1, 0.01):
+        smaller = shapely.buffer(outline, -share * inset)
+        if not smaller.is_empty:
+            inner = smaller
+            break
+    lines = shapely.shortest_line(inner, shapely.points(at))
+    return np.asarray(shapely.get_coordinates(lines)[::2])

@@ -1,0 +1,147 @@
+"""The stages after relaxation: dots that lie too close, the rim of the page, sizes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from stippler.kernels.tone.union_share import shares_of_union
+from stippler.stippling.draft import Draft, Floats
+from stippler.stippling.page_raster import PageRaster
+from stippler.stippling.postprocess import at_edge, even_rim, part_close
+from stippler.stippling.progress import TONED, Step
+from stippler.stippling.radii import solve_radii
+from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
+
+_PARTED, _LAST = 40, 200  # thousandths of the work on the tone before sizes are solved
+_GIVES = (0.6, 0.3, 0.2, 0.1)  # how far a dot may move across the page's edge, in its radius
+_NOTED, _BANDS = 0.03, 10  # tone that may lack without a note, in so many bands of darkness
+_APART = 0.6  # spacings that dots keep at least from those beyond the border
+_ROUNDS = 4
+
+
+def trim(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Leave out the dots of the bleed; who lies off the ground comes back to it."""
+    points = draft.raster.trim(draft.points, draft.n_wanted)
+    inside = draft.ground.inside(points * draft.raster.pixel_mm) / draft.raster.pixel_mm
+    draft.points = inside if draft.task.parts_mm else points
+    yield from ()
+
+
+def part(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Push dots apart that lie too close."""
+    points = draft.points
+    if not draft.task.parts_mm:
+        draft.points = part_close(points, draft.raster)
+    elif len(points):
+        everyone = np.concatenate((draft.stand, points))
+        awake = np.arange(len(everyone)) >= len(draft.stand)
+        within = draft.ground.within(everyone)
+        parted = part_close(everyone, draft.raster, awake, within)[len(draft.stand) :]
+        draft.points = _clear_of_neighbours(draft, parted)
+    yield Step(TONED, _PARTED, 1000)
+
+
+def rim(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Even out the ink along the edge of a page that bleeds."""
+    raster = draft.raster
+    for k, give in enumerate(_GIVES):
+        draft.points = even_rim(draft.points, raster, give)
+        yield _rim_step(k + 0.5)
+        draft.points = part_close(draft.points, raster, at_edge(draft.points, raster))
+        yield _rim_step(k + 1.0)
+
+
+def _rim_step(k: float) -> Step:
+    return Step(TONED, round(_PARTED + (_LAST - _PARTED) * k / len(_GIVES)), 1000)
+
+
+def onto_ink(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Move dots off white; those without ink anywhere are left out, unless they are to stay."""
+    inked = draft.raster.onto_ink(draft.points)
+    if draft.task.parts_mm:
+        inked = draft.ground.inside(inked * draft.raster.pixel_mm) / draft.raster.pixel_mm
+    if draft.radii is None or len(inked) == len(draft.points):
+        draft.points = inked
+    yield from ()
+
+
+def radii(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Solve the sizes, so that the ink meets the tone."""
+    n = len(draft.stand)
+    points = np.concatenate((draft.stand, draft.points)) if n else draft.points
+    cells = draft.ground.cells(points) if len(points) else None
+    raster = draft.raster
+    for share, solved in solve_radii(points, raster.darkness, raster.rule, tessellation=cells):
+        if share < 1.0:
+            yield Step(TONED, round(_LAST + (1000 - _LAST) * share), 1000)
+        else:
+            draft.radii = solved[n:]
+
+
+def shortfall_of(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Find what the ink falls short of."""
+    raster, sizes = draft.raster, draft.radii
+    assert sizes is not None, "sizes are known by now"
+    lack = shortfall(
+        raster.darkness, raster.rule, raster.pixel_mm, len(draft.points), draft.n_wanted
+    )
+    notes = lack.notes
+    if draft.style.sizes == "regions":
+        lack, notes = Shortfall(), notes + _off_the_tone(raster, draft.points, sizes)
+    notes += too_small_to_print(sizes * raster.pixel_mm)
+    draft.shortfall = replace(lack, notes=notes)
+    yield from ()
+
+
+def _clear_of_neighbours(draft: Draft, points: Floats) -> Floats:
+    """Move dots away from those beyond the border that they would touch, within their area."""
+    beyond = draft.task.neighbours_mm
+    if beyond is None or not len(beyond):
+        return points
+    pixel = draft.raster.pixel_mm
+    others = (beyond - np.array(draft.ground.origin_mm)) / pixel
+    tree = KDTree(others)
+    least = _APART / np.sqrt(np.maximum(draft.raster.density_under(points), 1e-12))
+    for _ in range(_ROUNDS):
+        found = tree.query(points, distance_upper_bound=float(least.max()))
+        distance, which = np.asarray(found[0]), np.asarray(found[1])
+        near = np.flatnonzero(distance < least)
+        if not len(near):
+            break
+        away = points[near] - others[which[near]]
+        lack = ((least - distance)[near] / np.maximum(distance[near], 1e-9))[:, None]
+        moved = points[near] + away * lack
+        stays = (draft.ground.inside(moved * pixel) != moved * pixel).any(axis=1)
+        moved[stays] = points[near][stays]
+        points = points.copy()
+        points[near] = moved
+    return points
+
+
+def _off_the_tone(raster: PageRaster, points: Floats, radii: Floats) -> tuple[str, ...]:
+    """Say how far the ink of dots whose sizes were not solved is off the picture's, at worst.
+
+    Tones are compared in ten bands of darkness; those that hardly occur are not.
+    """
+    shares = shares_of_union(np.column_stack((points, radii)).astype(np.float32))
+    ink = math.pi * shares * np.square(radii)
+    band = np.minimum((raster.darkness * _BANDS).astype(np.intp), _BANDS - 1).ravel()
+    n_pixels = np.bincount(band, minlength=_BANDS)
+    asked = np.bincount(band, raster.darkness.ravel(), _BANDS)
+    x, y = np.minimum(points.astype(np.intp), np.array(raster.darkness.shape[::-1]) - 1).T
+    laid = np.bincount(band[y * raster.darkness.shape[1] + x], ink, _BANDS)
+    many = n_pixels >= _NOTED * band.size
+    tones = np.stack((asked, laid)) / np.maximum(n_pixels, 1) * many
+    worst = int(np.argmax(np.abs(tones[1] - tones[0])))
+    wanted, drawn = tones[:, worst]
+    if abs(drawn - wanted) < _NOTED:
+        return ()
+    return (
+        f"sizes by region draw a darkness of {100 * wanted:.0f} % as {100 * drawn:.0f} %; "
+        "sizes by tone meet it",
+    )

@@ -1,0 +1,74 @@
+"""What is to be done with the dots of an area, as one frozen value; importing it costs nothing.
+
+The command line, Python and the window make a `Task` each, and `stippler.stippling.pipeline.run`
+carries all of them out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from shapely.geometry import MultiPolygon, Polygon
+
+    from stippler.drawing.reference import Reference
+    from stippler.drawing.style import Style
+
+STIPPLE, SETTLE, RELAX = "stipple", "settle", "relax"
+"""Make dots; go on with those that a person paints on, none comes, none goes; space them anew."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standing:
+    """Dots that are there when a task begins.
+
+    Attributes
+    ----------
+    position_mm : (n, 2) float64
+    radius_mm : (n,) float32
+    fixed : (n,) bool or None
+        Those that stay where they are; None is none.
+    part_of_dot : (n,) int or None
+        Which of the task's parts each lies in; None where there is only one.
+    """
+
+    position_mm: NDArray[np.float64]
+    radius_mm: NDArray[np.float32]
+    fixed: NDArray[np.bool_] | None = None
+    part_of_dot: NDArray[np.integer] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Task:
+    """Dots to be made or moved within an area.
+
+    Attributes
+    ----------
+    style : Style
+        How the area is drawn.
+    reference : Reference or None
+        What tone is taken from; only `RELAX` does without.
+    kind : {"stipple", "settle", "relax"}
+    parts_mm : tuple of shapely Polygon or MultiPolygon
+        What is the area's; none is the whole page, whose edge bleeds. Only `RELAX` takes several.
+    standing : Standing or None
+        For `STIPPLE`, dots that stay as they are; else those that are moved.
+    n_done : int
+        How many steps of relaxation are done already.
+    steps : int or None
+        How many to take; None is as many as the style says.
+    neighbours_mm : (m, 2) float64 or None
+        Dots beyond the border, from which new ones keep their distance.
+    """
+
+    style: Style
+    reference: Reference | None
+    kind: str = STIPPLE
+    parts_mm: tuple[Polygon | MultiPolygon, ...] = ()
+    standing: Standing | None = None
+    n_done: int = 0
+    steps: int | None = None
+    neighbours_mm: NDArray[np.float64] | None = None
