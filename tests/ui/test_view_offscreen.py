@@ -189,7 +189,7 @@ def test_the_picture_is_adjusted_before_ones_eyes_and_then_for_the_dots(opened) 
     document, ink = session.document, float((session.document.dots.radius_mm**2).sum())
     assert not look.reference_shown
     opened.app.editor.show_panel(DRAWING)
-    host.leave()
+    host.settle()
     host.click("More tones")
     host.click("Invert")
     assert session.adjustment.invert
