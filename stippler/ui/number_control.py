@@ -128,7 +128,7 @@ class Numbers:
         elif event.key == "backspace":
             self.text = self.text[:-1]
         else:
-            return event.key in _SIGNS
+            return not (event.mods.ctrl or event.mods.alt)
         return True
 
     def _take_key(self, event: KeyDown) -> bool:
