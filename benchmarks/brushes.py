@@ -105,7 +105,7 @@ def _times(document: Document, brush: Brush) -> list[float]:
 
 def _history(n: int) -> list[Figure]:
     document = _document(n)
-    rows = np.arange(50_000)
+    rows = np.arange(min(50_000, len(document.dots)))
 
     def stroke() -> None:
         document.begin("move")

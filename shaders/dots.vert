@@ -1,6 +1,6 @@
 // One dot, as a point sprite (POINTS) or an instanced quad; ROUND, or any ellipse, or ROUGH.
 // With MARKS only fixed and selected
-// dots. Positions in mm from the page's middle, lengths on screen in pixels with y up.
+// dots; with POLARITY only those painted alike. Positions in mm from the page's middle, lengths on screen in pixels with y up.
 #version 330 core
 #include "lib/dot_shape.glsl"
 #include "lib/deformation.glsl"
@@ -13,6 +13,10 @@ uniform vec2 u_px_to_clip;  // 2 / size of the target
 uniform float u_px_per_mm;
 #ifdef POINTS
 uniform float u_largest_mm; // larger ones are drawn as quads
+#endif
+
+#ifdef POLARITY
+uniform int u_paint; // FLAG_IN_WHITE: only white dots; 0: only black ones
 #endif
 
 #ifdef MARKS
@@ -77,7 +81,11 @@ void main() {
 #ifdef MARKS
     bool is_selected = (shape.flags & FLAG_SELECTED) != 0u;
     v_color = is_selected ? u_selected_color : u_fixed_color;
-    if (shape.flags == 0u) center = vec2(-1e6);
+    bool is_marked = (shape.flags & (FLAG_FIXED | FLAG_SELECTED)) != 0u;
+    if (!is_marked || (shape.flags & FLAG_UNSEEN) != 0u) center = vec2(-1e6);
+#endif
+#ifdef POLARITY
+    if ((shape.flags & (FLAG_IN_WHITE | FLAG_UNSEEN)) != uint(u_paint)) center = vec2(-1e6);
 #endif
     gl_Position = vec4(center * u_px_to_clip - 1.0, 0.0, 1.0);
 }

@@ -8,7 +8,10 @@ from collections.abc import Iterator
 from importlib import metadata
 
 from stippler import resources
+from stippler.editor.log_file import log_path
 from stippler.errors import DisplayError
+from stippler.files.native.backups import backups_root
+from stippler.files.native.recovery import recovery_root
 from stippler.kernels.machine.cache import cache_root
 from stippler.kernels.machine.pool import n_threads
 from stippler.version import VERSION
@@ -31,6 +34,9 @@ def lines() -> Iterator[str]:
     yield f"assets     {resources.assets()}"
     state = "compiled for this processor" if is_warm() else "not compiled yet for this processor"
     yield f"kernels    {cache_root()} ({state})"
+    yield f"recovery   {recovery_root()}"
+    yield f"backups    {backups_root()}"
+    yield f"log        {log_path()}"
 
 
 def _gl() -> Iterator[str]:

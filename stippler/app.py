@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stippler.editor.garbage_collection import Garbage
+from stippler.editor.log_file import begin_log, end_log, log_path
 from stippler.editor.session import Session
 from stippler.jobs.preparing import make_ready
 from stippler.jobs.stippling import stipple_picture
@@ -47,6 +48,8 @@ class App:
         Pixels a unit of an offscreen window, as dense screens of some systems have them.
     recovery : Path, optional
         The folder in which open drawings are kept for the case of a crash; else they are not.
+    backups : Path, optional
+        The folder in which earlier versions are kept; else they are not.
     """
 
     def __init__(
@@ -60,6 +63,7 @@ class App:
         offscreen: bool = False,
         ratio: float = 1.0,
         recovery: Path | None = None,
+        backups: Path | None = None,
     ) -> None:
         self._garbage = Garbage()
         kept = preferences or Preferences()
@@ -77,7 +81,9 @@ class App:
             make_ready=partial(make_ready, is_warm=is_warm),
             is_warm=is_warm,
             recovery=recovery,
+            backups=backups,
         )
+        self.session.saving.wishes = kept.saving
         native = False if offscreen else None
         self.editor = Editor(self.window, self.session, kept, native_dialogs=native)
 
@@ -107,6 +113,7 @@ class App:
     def close(self) -> None:
         """End the workers, then the window; a file that is being written is finished first."""
         self.worker.close(_FAREWELL_S)
+        self.session.saving.wait()
         self.exporter.close(None)  # half a file is worse than a window that stays
         self.editor.close()
         self.window.close()
@@ -128,11 +135,17 @@ def edit(
     DisplayError
         If there is no display, or no OpenGL 3.3.
     """
+    from stippler.files.native.backups import backups_root
     from stippler.files.native.recovery import recovery_root
 
     kept = Preferences.load(settings_folder())
     style, tone, width_mm = kept.begin(style, tone, width_mm, given)
-    app = App(style, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root())
+    app = App(
+        style, tone=tone, width_mm=width_mm, preferences=kept, recovery=recovery_root(),
+        backups=backups_root(),
+    )  # fmt: skip
+    log = begin_log(log_path())
+    app.session.messages.log_path = log_path() if log is not None else None
     try:
         app.step()  # a first frame before the worker takes its share of the processor
         app.open(path)
@@ -140,4 +153,5 @@ def edit(
         app.session.keeping.close()  # not after an exception: then the drawing can be recovered
     finally:
         app.close()
+        end_log(log)
     return 0

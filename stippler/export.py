@@ -12,7 +12,7 @@ from stippler.atomic_write import STDOUT, check_writable, replacing
 from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import ParameterError
 from stippler.files.write.format import Format
-from stippler.files.write.formats import ENDINGS, format_named, format_of, options_of
+from stippler.files.write.formats import ENDINGS, STIPPLE, format_named, format_of, options_of
 from stippler.files.write.options import checked
 
 __all__ = ["ENDINGS", "check_output", "check_size", "chosen", "save", "values_for"]
@@ -144,6 +144,10 @@ def _files(
     show: Show | None,
 ) -> Iterator[tuple[str | Path, Iterator[bytes]]]:
     """Yield the names of files and what goes into them."""
+    from stippler.drawing.visible import shown
+
+    if one is not STIPPLE:
+        drawing = shown(drawing)
     if one.is_data:
         yield path, one.write(drawing, values)
         return

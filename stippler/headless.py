@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.visible import shown
 from stippler.errors import DisplayError, ParameterError
 from stippler.render.frame import Frame
 from stippler.render.ink import MARGIN_PX
@@ -149,9 +150,7 @@ def _strips(
         made.callback(renderer.release)
         target = ctx.framebuffer([ctx.renderbuffer((columns, rows), channels)])
         made.callback(release_target, ctx, target)
-        renderer.scene.set_page(page.width_mm, page.height_mm)
-        renderer.scene.set_dots(drawing.dots)
-        renderer.scene.set_lines(drawing.lines)
+        renderer.scene.set_drawing(shown(drawing))
         for top in range(0, size[1], rows):
             shape = (rows, size[0], channels)[: 2 if channels == 1 else 3]
             strip = np.empty(shape, np.uint8)

@@ -7,4 +7,8 @@ import os
 
 def shown(name: str | os.PathLike[str]) -> str:
     """Return a file's name for people; bytes that are no UTF-8, and so no text, as �."""
-    return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+    text = os.fspath(name)
+    try:
+        return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+    except UnicodeEncodeError:  # half a pair, as JSON may have it
+        return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")

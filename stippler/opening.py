@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.page import MAX_PAGE_MM, Page
-from stippler.errors import TableError
+from stippler.errors import StipplerError, TableError
 from stippler.files.native.container import is_container
 from stippler.files.native.drawing_file import ENDING, open_drawing
+
+if TYPE_CHECKING:
+    from stippler.drawing.document import Document
 
 TABLES = (".csv", ".tsv")
 
@@ -26,16 +31,34 @@ def open_file(path: Path) -> Drawing:
         return _of_table(path)
     from stippler.files.read.picture import picture_of_bytes
 
-    drawing, more = open_drawing(path, picture_of_bytes)
-    drawing.foreign = replace(drawing.foreign, members=_strange(more))
+    return keeping(*open_drawing(path, picture_of_bytes))
+
+
+def keeping(drawing: Drawing, members: Mapping[str, bytes]) -> Drawing:
+    """Let a drawing keep the members of its file that are made anew by nobody here."""
+    from stippler.files.native.thumbnail import MEMBER
+
+    strange = {name: data for name, data in members.items() if name != MEMBER}
+    drawing.foreign = replace(drawing.foreign, members=strange)
     return drawing
 
 
-def _strange(members: dict[str, bytes]) -> dict[str, bytes]:
-    """Return the members that are made anew by nobody here."""
-    from stippler.files.native.thumbnail import MEMBER
+def open_document(path: Path) -> tuple[Document, str]:
+    """Open a drawing to be edited, with the steps that its file holds; and say what they lack."""
+    from stippler.drawing.document import Document
+    from stippler.files.native import step_file
+    from stippler.files.read.picture import picture_of_bytes
 
-    return {name: data for name, data in members.items() if name != MEMBER}
+    document = Document(open_file(path))
+    steps = document.drawing.foreign.members.get(step_file.MEMBER)
+    if steps is None:
+        return document, ""
+    try:
+        is_whole = step_file.give_steps(document, steps, picture_of_bytes, str(path))
+    except StipplerError as error:
+        return document, f"its history cannot be read: {error}"
+    changed = "its history is not taken over: the drawing was changed without it"
+    return document, "" if is_whole else changed
 
 
 def _of_table(path: Path) -> Drawing:

@@ -5,7 +5,7 @@
 // With PREVIEW a change is under way; with TIP it is for the dots under a brush, with EDGES it goes
 // by a reference's edges. Defines and not values, as software GL takes every branch.
 
-const uint FLAG_FIXED = 1u, FLAG_SELECTED = 2u;
+const uint FLAG_FIXED = 1u, FLAG_SELECTED = 2u, FLAG_IN_WHITE = 4u, FLAG_UNSEEN = 8u;
 const float PI = 3.14159265359;
 
 struct Shape {

@@ -50,7 +50,11 @@ def _with_outlines(made: PlanarMap, drawing: Drawing, next_area: int) -> PlanarM
 
 
 def edit_areas(
-    document: Document, label: str, edit: Callable[[PlanarMap], Outcome], style: int | None = None
+    document: Document,
+    label: str,
+    edit: Callable[[PlanarMap], Outcome],
+    style: int | None = None,
+    names: Mapping[int, str] | None = None,
 ) -> Outcome:
     """Edit areas as one step of the history.
 
@@ -59,7 +63,9 @@ def edit_areas(
     edit : callable
         From the map before to what one of the edits in `planar` makes of it.
     style : int, optional
-        Of new areas; else that of the area they were taken from, the page's.
+        Of new areas; else that of the area in whose place they are.
+    names : mapping of int to str, optional
+        Of new areas.
 
     Raises
     ------
@@ -77,7 +83,7 @@ def edit_areas(
     document.begin(label)
     try:
         _set_borders(document, after)
-        _set_areas(document, before, outcome, style)
+        _set_areas(document, before, outcome, style, names or {})
         _hand_over(document, before, after)
     except BaseException:
         document.cancel()
@@ -113,7 +119,13 @@ def _set_borders(document: Document, after: PlanarMap) -> None:
     document.drawing.next_id[records.BORDER] = after.next_arc
 
 
-def _set_areas(document: Document, before: PlanarMap, outcome: Outcome, style: int | None) -> None:
+def _set_areas(
+    document: Document,
+    before: PlanarMap,
+    outcome: Outcome,
+    style: int | None,
+    names: Mapping[int, str],
+) -> None:
     areas: dict[int, Area] = document.drawing.table(records.AREA)
     for k in sorted(touched(before, outcome.map) | set(outcome.made)):
         if k in outcome.gone:
@@ -123,7 +135,7 @@ def _set_areas(document: Document, before: PlanarMap, outcome: Outcome, style: i
             document.set(records.AREA, k, replace(areas[k], outline_mm=outline))
         else:
             own = areas[_came_from(before, outline)].style if style is None else style
-            made = Area(f"area {k}", outline, own, _COLOURS[k % len(_COLOURS)])
+            made = Area(names.get(k) or f"area {k}", outline, own, _COLOURS[k % len(_COLOURS)])
             document.set(records.AREA, k, made)
     for k in outcome.gone:
         if k in areas:

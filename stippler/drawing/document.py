@@ -18,7 +18,6 @@ from stippler.drawing.history import BUDGET_BYTES, History, Step
 from stippler.drawing.index import DotIndex
 from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry, Follower
 from stippler.drawing.partition import NOWHERE, Partition
-from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.reference import Reference
 from stippler.drawing.run import Run
@@ -59,6 +58,8 @@ class Document:
         self._followers: list[Follower] = []
         self._replayed: Edit = Edit("")
         self._replayed_step: Step | None = None
+        self._locked: NDArray[np.int32] | None = None  # areas
+        self._note_locks()
         drawing.dots = self._store.dots
         self._find_by_place()
 
@@ -123,7 +124,7 @@ class Document:
 
     def move(self, rows: Rows, position_mm: NDArray[np.float64]) -> None:
         """Move the free ones of some dots, as far as their areas let them."""
-        free = ~self.dots.is_fixed(rows)
+        free = ~self.dots.is_fixed(rows) & self._yielding(rows)
         if not free.all():
             rows, position_mm = rows[free], position_mm[free]
         old = self.dots.position_mm[rows]
@@ -131,16 +132,24 @@ class Document:
         self.change("position_mm", rows, new)
 
     def change(self, field: str, rows: Rows, values: NDArray[np.generic]) -> None:
-        """Set one field of some rows."""
+        """Set one field of some rows; dots of locked areas only change hands."""
+        if self._locked is not None and field != "area":
+            kept = self._yielding(rows)
+            rows, values = rows[kept], values[kept]
         if not len(rows):
             return
         self._in_stroke().change(field, rows, values)
         self._note(rows, rows, moved=field == "position_mm")
 
     def insert(self, dots: Dots) -> Rows:
-        """Add dots, which get new ids and the areas they lie in; those off the page are not."""
+        """Add dots, which get new ids and the areas they lie in.
+
+        Those that lie off the page, or in locked areas, are not added.
+        """
         stroke = self._in_stroke()
         area = self.partition.area_at(dots.position_mm)
+        if self._locked is not None:
+            area[np.isin(area, self._locked)] = NOWHERE
         if (area == NOWHERE).any():
             dots = dots.take(area != NOWHERE)
         dots.area[:] = area[area != NOWHERE]
@@ -152,11 +161,22 @@ class Document:
         return rows
 
     def remove(self, rows: Rows) -> None:
-        """Remove dots; rows of others change."""
+        """Remove dots, but for those of locked areas; rows of others change."""
+        rows = rows[self._yielding(rows)]
         if not len(rows):
             return
         touched = self._in_stroke().remove(union([rows], len(self.dots)))
         self._note(touched, touched[:0], moved=True)
+
+    def _yielding(self, rows: Rows) -> NDArray[np.bool_]:
+        """Return which rows are of areas that are not locked."""
+        if self._locked is None:
+            return np.ones(len(rows), np.bool_)
+        return ~np.isin(self.dots.area[rows], self._locked)
+
+    def _note_locks(self) -> None:
+        locked = [k for k, area in self.drawing.areas.items() if area.locked]
+        self._locked = np.array(locked, np.int32) if locked else None
 
     def set(self, kind: str, i: int, value: Any) -> None:
         """Set a value of another kind than dots, as `stippler.drawing.records` lists them.
@@ -222,7 +242,8 @@ class Document:
             self.end_run()
             if self.history.undone is not step:
                 return True
-        return self._step(self.history.undo(), UNDONE)
+        n_done = self.history.n_done
+        return self._step(self.history.undo(), UNDONE, n_done)
 
     def redo(self) -> bool:
         """Do the last undone step again; return whether there was one.
@@ -233,11 +254,29 @@ class Document:
             If the step lay on disk and is lost; it and all later ones are gone, and nothing else.
         """
         self._no_stroke()
-        return self._step(self.history.redo(), REDONE)
+        n_done = self.history.n_done
+        return self._step(self.history.redo(), REDONE, n_done)
 
-    def _step(self, edit: Edit | None, what: str) -> bool:
+    def steps(self) -> list[Step] | None:
+        """Return copies of all steps as they are now, a run's among them, for a file to keep.
+
+        None while a stroke or a draft goes on: what they have changed is no step yet.
+        """
+        if self._stroke is not None or self._draft is not None:
+            return None
+        copies = [replace(step) for step in self.history.steps]
+        for copy, step in zip(copies, self.history.steps, strict=True):
+            if self._run is not None and step is self._run.step:
+                copy.edit = self._run.edit()
+        return copies
+
+    def _step(self, edit: Edit | None, what: str, n_before: int) -> bool:
         if edit is not None:
-            self._apply(edit)
+            try:
+                self._apply(edit)
+            except BaseException:  # for want of memory: it was not done
+                self.history.go_to(n_before)
+                raise
             self._tell(Entry(what, edit))
         return edit is not None
 
@@ -264,7 +303,7 @@ class Document:
         """
         if self._run is None:
             return 0
-        n, furthest_mm = self._run.move(self._store, position_mm)
+        n, furthest_mm = self._run.move(self._store, position_mm, self._locked)
         self._index.drift(furthest_mm)
         self.changes.note_places()
         return n
@@ -273,7 +312,7 @@ class Document:
         """Give the dots of the run a result's radii, as `merge` does; return how many got one."""
         if self._run is None:
             return 0
-        n = self._run.size(self._store, radius_mm)
+        n = self._run.size(self._store, radius_mm, self._locked)
         self.changes.note_places()
         return n
 
@@ -324,7 +363,7 @@ class Document:
         if keeps_fixed:
             gives_way &= ~self.dots.fixed
         replaced = np.flatnonzero(gives_way)
-        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(style.pen))
+        self._draft = Draft(self.drawing, self._store, label, area, replaced, style)
         i = self.drawing.areas[area].style
         for kind, k, value in ((records.STYLE, i, style), (records.REFERENCE, 0, reference)):
             if value is not None and value != self.drawing.get(kind, k):
@@ -430,6 +469,7 @@ class Document:
         self.changes.note_record(kind, i)
         if kind == records.AREA:
             self._partition = None
+            self._note_locks()
         elif kind == records.PAGE:
             self._find_by_place()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,8 +43,9 @@ class DotRows:
     rows: Rows
 
     @classmethod
+    @cache
     def none(cls) -> DotRows:
-        """Make an empty set."""
+        """Return the empty set; always the same one."""
         return cls(Dots.none(), np.empty(0, np.int64))
 
     def __len__(self) -> int:
@@ -63,8 +65,9 @@ class Shift:
     after: Rows
 
     @classmethod
+    @cache
     def none(cls) -> Shift:
-        """Make an empty set."""
+        """Return the empty set; always the same one."""
         nothing = np.empty(0, np.int64)
         return cls(nothing, nothing, nothing)
 
@@ -93,8 +96,9 @@ class DotEdit:
     shifted: Shift
 
     @classmethod
+    @cache
     def none(cls) -> DotEdit:
-        """Make a change of nothing."""
+        """Return the change of nothing; always the same one."""
         return cls({}, DotRows.none(), DotRows.none(), Shift.none())
 
     def inverse(self) -> DotEdit:

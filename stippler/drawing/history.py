@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import tempfile
 import zipfile
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NoReturn
@@ -46,6 +47,26 @@ class Step:
     def is_open(self) -> bool:
         """Whether the step is still being made."""
         return self.edit is None and self.path is None
+
+
+def edit_of(step: Step) -> Edit | None:
+    """Return a step's edit, from disk if it lies there; None if it is lost. The step stays.
+
+    Raises
+    ------
+    ValueError
+        If the step is still being made.
+    """
+    if step.edit is not None:
+        return step.edit
+    if step.path is None or step.rest is None:
+        raise ValueError("a step that is still being made cannot be undone")
+    try:
+        with np.load(step.path) as arrays:
+            return replace(step.rest, dots=DotEdit.from_arrays(dict(arrays)))
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        _log.warning("a step of the history cannot be read (%s)", error)
+        return None
 
 
 class History:
@@ -148,6 +169,12 @@ class History:
         """Count so many steps as done, as far as there are so many; nothing is undone or done."""
         self.n_done = min(max(n_done, 0), len(self.steps))
 
+    def restore(self, steps: Iterable[tuple[Edit, bool]], n_done: int) -> None:
+        """Begin with steps made elsewhere, each with whether a job made it; nothing is done."""
+        for edit, of_job in steps:
+            self.push(edit, of_job=of_job)
+        self.go_to(n_done)
+
     def close(self) -> None:
         """Forget all, and what lies on disk."""
         self.steps, self.n_done, self.n_bytes = [], 0, 0
@@ -163,17 +190,10 @@ class History:
         """Return a step's edit, from disk if it lies there; None if it is lost."""
         if step.edit is not None:
             return step.edit
-        if step.path is None or step.rest is None:
-            raise ValueError("a step that is still being made cannot be undone")
-        try:
-            with np.load(step.path) as arrays:
-                dots = DotEdit.from_arrays(dict(arrays))
-        except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
-            _log.warning("a step of the history cannot be read (%s)", error)
-            return None
-        edit = replace(step.rest, dots=dots)
-        self._forget(step)
-        self._hold(step, edit)
+        edit = edit_of(step)
+        if edit is not None:
+            self._forget(step)
+            self._hold(step, edit)
         return edit
 
     def _lose(self, which: slice, where: str) -> NoReturn:

@@ -70,5 +70,23 @@ def value_from_json(kind: str, data: Mapping[str, Any], pictures: Mapping[str, P
         If the kind, a field or a picture is not known, or a value is out of range.
     """
     if kind == REFERENCE:
-        return Reference.from_json(data, pictures)
-    return _READERS[kind](data)
+        made: Record = Reference.from_json(data, pictures)
+        _check_kinds(made.adjustment)  # type: ignore[attr-defined]
+        return made
+    made = _READERS[kind](data)
+    _check_kinds(made)
+    return made
+
+
+_KINDS_OF_VALUE: dict[str, tuple[type, ...]] = {
+    "str": (str,), "int": (int,), "float": (float, int), "bool": (bool,),
+    "int | None": (int, type(None)),
+}  # fmt: skip
+
+
+def _check_kinds(value: Any) -> None:
+    """Raise `TypeError` where a field holds another kind of value than it is declared to hold."""
+    for f in fields(value):
+        kinds = _KINDS_OF_VALUE.get(str(f.type))
+        if kinds is not None and type(getattr(value, f.name)) not in kinds:
+            raise TypeError(f"{f.name} is not of the kind {f.type}")

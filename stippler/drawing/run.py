@@ -42,13 +42,21 @@ class Run:
         self._told = self._first
         self._rows: tuple[int, Rows] = (-1, np.empty(0, np.int64))
 
-    def move(self, store: DotStore, result: NDArray[np.float64]) -> tuple[int, float]:
-        """Merge positions; return how many dots they moved, and the longest way one went."""
+    def move(
+        self, store: DotStore, result: NDArray[np.float64], locked: NDArray[np.int32] | None = None
+    ) -> tuple[int, float]:
+        """Merge positions; return how many dots they moved, and the longest way one went.
+
+        Parameters
+        ----------
+        locked : (k,) int32, optional
+            Areas whose dots stay.
+        """
         if result.shape != self.position_mm.shape:
             raise ValueError("the result is not one of this run")
         dots = store.dots
         return merge_positions(
-            self._rows_in(store),
+            self._rows_in(store, locked),
             np.ascontiguousarray(result, np.float64),
             store.edited,
             self.base,
@@ -57,11 +65,16 @@ class Run:
             self.position_mm,
         )
 
-    def size(self, store: DotStore, radius_mm: NDArray[np.float32]) -> int:
+    def size(
+        self,
+        store: DotStore,
+        radius_mm: NDArray[np.float32],
+        locked: NDArray[np.int32] | None = None,
+    ) -> int:
         """Merge radii, as `move` does positions; return how many dots got one."""
         if radius_mm.shape != self.radius_mm.shape:
             raise ValueError("the result is not one of this run")
-        rows = self._rows_in(store)
+        rows = self._rows_in(store, locked)
         mine = rows >= 0
         mine[mine] = (store.edited[rows[mine]] <= self.base) & ~store.dots.is_fixed(rows[mine])
         self.radius_mm[mine] = radius_mm[mine]
@@ -78,10 +91,14 @@ class Run:
         self._told = (self.position_mm.copy(), self.radius_mm.copy())
         return edit
 
-    def _rows_in(self, store: DotStore) -> Rows:
+    def _rows_in(self, store: DotStore, locked: NDArray[np.int32] | None) -> Rows:
         if self._rows[0] != store.n_layouts:
             self._rows = (store.n_layouts, store.rows(self.ids))
-        return self._rows[1]
+        rows = self._rows[1]
+        if locked is not None:
+            rows = rows.copy()
+            rows[np.isin(store.dots.area[rows], locked)] = -1
+        return rows
 
     def _since(self, before: tuple[NDArray[Any], NDArray[Any]]) -> Edit:
         changes: dict[str, Change] = {}

@@ -35,7 +35,9 @@ class Desk(Protocol):
         """Begin another drawing."""
         ...
 
-    def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
+    def open_document(
+        self, document: Document, file: Path | None, lost: Lost | None, *, is_earlier: bool = False
+    ) -> None:
         """Open a drawing that was kept."""
         ...
 
@@ -157,22 +159,27 @@ class Reopening(Job):
         What it is saved in.
     lost : Lost or None
         What a crash has left of it.
+    is_earlier : bool
+        Whether it is not what the file holds now.
     """
 
     file: Path | None = None
     lost: Lost | None = None
+    is_earlier: bool = False
     _opened: Document | None = None
 
     def take(self, desk: Desk, work: Work) -> Activity:
         """Hold the drawing until everything is ready for it."""
         self._note(work)
         self._opened = work.document or self._opened
+        if work.note:
+            desk.messages.say(work.note, WARNING)
         return self
 
     def end(self, desk: Desk, outcome: str) -> None:
         """Open it; one that could not be read leaves what was open."""
         if self._opened is not None and outcome == "done":
-            desk.open_document(self._opened, self.file, self.lost)
+            desk.open_document(self._opened, self.file, self.lost, is_earlier=self.is_earlier)
 
 
 @dataclass(slots=True)
@@ -200,6 +207,8 @@ class Making(Job):
         document, made = desk.document, work.progress
         if made is not None and document is not None:
             if self.last is None:
+                if work.note:
+                    desk.messages.say(work.note, WARNING)
                 document.begin_draft("Stipple", self.area, self.style, work.reference)
             document.draft(made.position_mm, made.radius_mm)
             self.last = made

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing import records
 from stippler.drawing.area import PAGE_AREA, Area
 from stippler.editor.area_choice import AreaChoice
+from stippler.editor.area_jobs import AreaJobs
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.session import Session
-from stippler.errors import GeometryError
+from stippler.errors import GeometryError, StipplerError
+from stippler.names import shown
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -27,12 +30,15 @@ class AreaActs:
 
     Attributes
     ----------
+    session : Session
+    jobs : AreaJobs
+        What takes longer than a frame.
     tolerance_mm : float
         What `simplify` may move a border by.
     """
 
-    def __init__(self, session: Session, painting: Painting) -> None:
-        self._session, self._painting = session, painting
+    def __init__(self, session: Session, painting: Painting, jobs: AreaJobs) -> None:
+        self.session, self._painting, self.jobs = session, painting, jobs
         self.tolerance_mm = 0.2
 
     @property
@@ -43,21 +49,31 @@ class AreaActs:
     @property
     def document(self) -> Document | None:
         """The open document, if it can be edited now."""
-        session = self._session
+        session = self.session
         ready = session.document is not None and session.paintable
         free = not self._painting.is_busy
         return session.document if ready and free else None
 
+    @property
+    def any_document(self) -> Document | None:
+        """The open document, if only to look at."""
+        return self.session.document
+
     def listed(self) -> list[tuple[int, Area]]:
         """Return the areas in the order of the list, the page last."""
-        if self._session.document is None:
+        if self.session.document is None:
             return []
-        return in_order(self._session.document.drawing.areas)
+        return in_order(self.session.document.drawing.areas)
+
+    @property
+    def n_listed(self) -> int:
+        """How many areas there are."""
+        return len(self.session.document.drawing.areas) if self.session.document else 0
 
     @property
     def n_chosen(self) -> int:
         """How many areas are chosen, the page's not counted."""
-        document = self._session.document
+        document = self.session.document
         return len(self.choice.drawn(document)) if document is not None else 0
 
     # --- borders ------------------------------------------------------------------------------
@@ -131,8 +147,113 @@ class AreaActs:
             self._warn(str(error))
             return False
         for note in outcome.notes:
-            self._session.messages.say(note, INFO)
+            self.session.messages.say(note, INFO)
         return True
+
+    # --- processing ---------------------------------------------------------------------------
+
+    def process(self) -> None:
+        """Stipple the chosen areas anew, one after the other, each in its style."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.process(self.session, self._all_chosen())
+
+    def relax(self) -> None:
+        """Relax the chosen areas."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.relax(self.session, self._all_chosen())
+
+    def fill(self) -> None:
+        """Add dots to the chosen areas."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.fill(self.session, self._all_chosen())
+
+    def resize(self, percent: float) -> None:
+        """Make the dots of the chosen areas larger or smaller."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.resize(self.session, self._all_chosen(), percent)
+
+    def clear(self) -> None:
+        """Remove the dots of the chosen areas."""
+        from stippler.editor import processing
+
+        if self._ready():
+            processing.clear(self.session, self._all_chosen())
+
+    def _ready(self) -> bool:
+        """Return whether areas are chosen and nothing is held; say what is missing."""
+        if self._all_chosen() and not self._painting.is_busy:
+            return True
+        self._warn("choose an area first, in the list or on the canvas with the tool Nodes")
+        return False
+
+    # --- files --------------------------------------------------------------------------------
+
+    def import_outlines(self, path: Path) -> None:
+        """Make areas of the outlines in a file, beside everything else, as one step."""
+        from stippler.drawing.area_edits import current_map, held_areas
+        from stippler.editor.area_files import Imported, import_job
+
+        document = self.document
+        if document is None:
+            self._warn("begin a page, or open a picture, before outlines are imported")
+            return
+        before, page = current_map(document), document.drawing.page
+        size_mm, held = (page.width_mm, page.height_mm), held_areas(document.drawing)
+
+        def take(found: Imported) -> None:
+            self._take_map(document, "Import areas", found.before, found.map, found.names)
+            for note in found.notes:
+                self.session.messages.say(note, INFO)
+
+        job = import_job(path, before, size_mm, held)
+        self.jobs.start(f"reading {shown(path.name)}", job, take)
+
+    def export_outlines(self, path: Path) -> None:
+        """Write the outlines of all areas to a file."""
+        from stippler.editor.area_files import write_areas
+
+        document = self.session.document
+        if document is None:
+            return
+        try:
+            n = write_areas(document.drawing, path)
+        except StipplerError as error:
+            self._warn(str(error))
+            return
+        self.session.messages.say(f"{n} areas written to {shown(path.name)}", INFO)
+
+    def _take_map(
+        self,
+        of: Document,
+        label: str,
+        before: PlanarMap,
+        after: PlanarMap,
+        names: Mapping[int, str],
+    ) -> None:
+        """Use a map that was worked out meanwhile, if the areas are still those it began with."""
+        from stippler.drawing.area_edits import current_map, edit_areas
+        from stippler.drawing.planar.edits import Outcome
+
+        if self.document is not of or current_map(of) is not before:
+            self._warn("the areas have changed meanwhile; do it once more")
+            return
+        made = tuple(k for k in after.areas if k not in set(before.areas))
+        gone = tuple(k for k in before.areas if k not in set(after.areas))
+        outcome = Outcome(after, made, gone)
+        try:
+            edit_areas(of, label, lambda _: outcome, names=names)
+        except GeometryError as error:
+            self._warn(str(error))
+            return
+        self.choice.choose(made)
 
     # --- what an area is called, and whether it is locked, hidden ------------------------------
 
@@ -203,15 +324,15 @@ class AreaActs:
     # --- inside -------------------------------------------------------------------------------
 
     def _chosen(self) -> list[int]:
-        document = self._session.document
+        document = self.session.document
         return self.choice.drawn(document) if document is not None else []
 
     def _all_chosen(self) -> list[int]:
-        document = self._session.document
+        document = self.session.document
         return self.choice.alive(document) if document is not None else []
 
     def _warn(self, text: str) -> None:
-        self._session.messages.say(text, WARNING)
+        self.session.messages.say(text, WARNING)
 
 
 def in_order(areas: dict[int, Area]) -> list[tuple[int, Area]]:

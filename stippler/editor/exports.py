@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stippler.editor.messages import ERROR, Messages
+from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.jobs.exporting import Writing, export_drawing
 
 if TYPE_CHECKING:
@@ -18,6 +19,24 @@ _NEVER = object()
 
 SAVED = ".stipple"
 """Ending of files that hold all of a drawing; others are exports."""
+
+
+@dataclass(frozen=True, slots=True)
+class FailedSave:
+    """A save that came to nothing.
+
+    Attributes
+    ----------
+    path : Path
+        The file that was to be written; what stood there still does.
+    why : str
+    is_copy : bool
+        Whether it was to be a copy.
+    """
+
+    path: Path
+    why: str
+    is_copy: bool
 
 
 class Exports:
@@ -36,6 +55,10 @@ class Exports:
         The file that it is saved in.
     n_written : int
         How many files have been written so far.
+    differs : bool
+        Whether the drawing was opened as another than its file holds.
+    failed : FailedSave or None
+        The last save, if it failed and nobody has been asked yet what to do.
     writing : Path or None
         The file that is being written, or was last.
     """
@@ -87,12 +110,14 @@ class Exports:
         """
         self.path: Path | None = None
         self.file = file
+        self.failed: FailedSave | None = None
+        self.differs = False
         self._seen = _seen(file)
         self._written_mark: object = _NEVER
         self._mark: object = _NEVER
         self._is_copy = False
         if file is not None and saved is not None:
-            self._written_mark = _mark(saved)
+            self._written_mark = state_mark(saved)
 
     @property
     def is_changed_on_disk(self) -> bool:
@@ -112,6 +137,7 @@ class Exports:
         *,
         is_copy: bool = False,
         expected_bytes: int = 0,
+        job: Callable[[Writing], Iterator[Path]] | None = None,
     ) -> None:
         """Write a drawing as it is now.
 
@@ -125,21 +151,28 @@ class Exports:
             The files that the drawing was made from, which are never written over.
         expected_bytes : int
             About how large the file will be; 0 is not known.
+        job : callable, optional
+            Writes it, in place of what `options` would.
         """
         self.writing, self._expected_bytes = path, expected_bytes
-        drawing = document.drawing.snapshot()
+        drawing = document.drawing.snapshot() if job is None else document.drawing
         self._writing = writing = Writing()
+        self.failed = None
         self._request = self._worker.start(
-            lambda: export_drawing(drawing, path, options, inputs, writing)
+            lambda: (
+                job(writing)
+                if job is not None
+                else export_drawing(drawing, path, options, inputs, writing)
+            )
         )
-        self._mark, self._is_copy = _mark(document), is_copy
+        self._mark, self._is_copy = state_mark(document), is_copy
         self._messages.say(f"writing {path.name}")
 
     def lack(self, document: Document) -> bool:
         """Return whether work of a person's hand is in the drawing and not in its file."""
-        if document.in_stroke:
+        if document.in_stroke or self.differs:
             return True
-        if _mark(document) is self._written_mark:
+        if state_mark(document) is self._written_mark:
             return False
         history = document.history
         return any(not step.of_job for step in history.steps[: history.n_done])
@@ -158,11 +191,16 @@ class Exports:
             self._messages.say(str(update.failure))
         elif update.failure is not None:
             self._messages.say(str(update.failure), ERROR, update.failure.__cause__)
+            path, is_open = self.writing, self._mark is not _NEVER
+            if is_open and path is not None and path.suffix.lower() == SAVED:
+                self.failed = FailedSave(path, str(update.failure), self._is_copy)
         elif update.ended == "finished" and update.result is not None:
             self.n_written += 1
             if self._mark is not _NEVER:  # else another drawing has been opened meanwhile
                 self._note(update.result)
             self._messages.say(f"{update.result} is written")
+            if self._writing.note:
+                self._messages.say(self._writing.note, WARNING)
             return update.result
         return Path()
 
@@ -172,6 +210,7 @@ class Exports:
             self.path = path
         elif not self._is_copy:
             self.file, self._seen, self._written_mark = path, _seen(path), self._mark
+            self.differs = False
 
 
 def _seen(path: Path | None) -> tuple[int, int] | None:
@@ -183,7 +222,7 @@ def _seen(path: Path | None) -> tuple[int, int] | None:
     return (status.st_mtime_ns, status.st_size) if status is not None else None
 
 
-def _mark(document: Document) -> object:
+def state_mark(document: Document) -> object:
     """Return what tells a state of the dots from others: the last step; None is the beginning."""
     if document.in_draft or document.in_run or document.in_stroke:
         return object()  # like no other

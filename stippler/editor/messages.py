@@ -7,7 +7,9 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
+from stippler.errors import StipplerError
 from stippler.names import shown
 
 INFO, WARNING, ERROR = "info", "warning", "error"
@@ -34,17 +36,29 @@ class Messages:
     ----------
     clock : callable
         Seconds, never going back.
+
+    Attributes
+    ----------
+    log_path : Path or None
+        The file that the program's log goes to.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
+        self.log_path: Path | None = None
         self._seen = False
         self._logged: set[str] = set()
         self.log: deque[Message] = deque(maxlen=_KEPT)
 
     def say(self, text: str, level: str = INFO, error: BaseException | None = None) -> None:
-        """Add a line; one that repeats the last only shows it for longer."""
-        line = Message(level, _shortened(text), self._clock())
+        """Add a line; one that repeats the last only shows it for longer.
+
+        Parameters
+        ----------
+        error : BaseException, optional
+            What was raised; the line tells where the log is, if nobody has foreseen it.
+        """
+        line = Message(level, _shortened(text) + self._pointer(error), self._clock())
         if self.log and (self.log[-1].level, self.log[-1].text) == (level, line.text):
             self.log.pop()
         elif level == ERROR and line.text not in self._logged:
@@ -52,6 +66,11 @@ class Messages:
             _log.error("%s", line.text, exc_info=error)
         self.log.append(line)
         self._seen = False
+
+    def _pointer(self, error: BaseException | None) -> str:
+        if self.log_path is None or error is None or isinstance(error, StipplerError):
+            return ""
+        return f"; details are in {shown(self.log_path)}"
 
     def dismiss(self) -> None:
         """Take the current line off; the log keeps it."""

@@ -25,9 +25,10 @@ from stippler.editor.exports import SAVED, Exports
 from stippler.editor.keeping import Keeping
 from stippler.editor.messages import ERROR, WARNING, Messages
 from stippler.editor.rates import StepRate
+from stippler.editor.saving import Saving
 from stippler.editor.session_state import SessionState, Stipple
 from stippler.errors import ParameterError, StipplerError
-from stippler.jobs import reading, stippling, work
+from stippler.jobs import preflight, reading, stippling, work
 from stippler.jobs.work import Source, Work
 from stippler.stippling.task import SETTLE, Standing, Task
 
@@ -65,6 +66,7 @@ class Session(SessionState):
         make_ready: Callable[[], Iterator[Work]] = lambda: iter(()),
         is_warm: Callable[[], bool] = lambda: True,
         recovery: Path | None = None,
+        backups: Path | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._worker, self._stipple, self._clock = worker, stipple, clock
@@ -73,6 +75,7 @@ class Session(SessionState):
         self.messages = Messages(clock)
         self.keeping = Keeping(recovery, self.messages, clock)
         super().__init__(style, tone, width_mm, Exports(exporter, self.messages))
+        self.saving = Saving(self.exports, self.messages, backups, clock)
 
     # --- what a person does -----------------------------------------------------------------
 
@@ -95,15 +98,32 @@ class Session(SessionState):
         """Open a drawing that was saved."""
         self._reopen(reading.open_drawing(path, is_warm=self._is_warm), file=path)
 
+    def open_earlier(self, path: Path) -> None:
+        """Open an earlier version of the drawing in its place; its file stays as it is."""
+        job = reading.open_drawing(path, is_warm=self._is_warm)
+        self._reopen(job, file=self.exports.file, is_earlier=True)
+
     def recover(self, lost: Lost) -> None:
         """Open what a crash has left of a drawing."""
         self._reopen(reading.recover(lost, is_warm=self._is_warm), file=lost.path, lost=lost)
 
-    def _reopen(self, job: Iterator[Work], *, file: Path | None, lost: Lost | None = None) -> None:
+    def _reopen(
+        self,
+        job: Iterator[Work],
+        *,
+        file: Path | None,
+        lost: Lost | None = None,
+        is_earlier: bool = False,
+    ) -> None:
         self.supersede()
-        self.launch(lambda: job, lambda k: Reopening(k, work.READ, file=file, lost=lost))
+        self.launch(
+            lambda: job,
+            lambda k: Reopening(k, work.READ, file=file, lost=lost, is_earlier=is_earlier),
+        )
 
-    def open_document(self, document: Document, file: Path | None, lost: Lost | None) -> None:
+    def open_document(
+        self, document: Document, file: Path | None, lost: Lost | None, *, is_earlier: bool = False
+    ) -> None:
         """Open a drawing that was kept; what a crash had left of it goes when it is kept anew."""
         is_table = file is not None and file.suffix.lower() != SAVED
         self._open(document, None, None if is_table else file, lost)
@@ -118,6 +138,9 @@ class Session(SessionState):
         self.style = document.drawing.style_of(0)
         if lost is not None:
             self.messages.say(f"{lost.name} is as it was; save it to keep it")
+        if is_earlier:
+            self.exports.differs = True
+            self.messages.say("this is an earlier version; save it to go on with it")
 
     def show(self, drawing: Drawing, source: Source | None = None) -> None:
         """Open a drawing that is there; a job that runs is superseded."""
@@ -161,6 +184,7 @@ class Session(SessionState):
         frozen = replace(document.drawing, dots=document.begin_run(label))
         style = replace(self.style, weighted=weighted)
         source = self.source
+        self._warn("relax", self.n_dots)
         self.launch(
             lambda: stippling.relax_drawing(frozen, style, iterations, areas),
             lambda k: Relaxing(k, "relax", source, total=iterations),
@@ -294,6 +318,7 @@ class Session(SessionState):
             return
         values = {"dpi": dpi} if options is None else options
         self.exports.start(self.document, path, values, self.inputs, expected_bytes=expected_bytes)
+        self._warn("export", self.n_dots, self._pixels_at(path, values))
 
     def save(self, path: Path, *, is_copy: bool = False) -> None:
         """Write all of the drawing to a file of its own, to go on with later.
@@ -308,7 +333,8 @@ class Session(SessionState):
         elif self.document is None:
             self.messages.say("there is no drawing to save yet", WARNING)
         else:
-            self.exports.start(self.document, path, {}, is_copy=is_copy)
+            self.saving.save(self.document, path, is_copy=is_copy)
+            self._warn("save", self.n_dots)
 
     # --- what the workers did ---------------------------------------------------------------
 
@@ -321,6 +347,7 @@ class Session(SessionState):
         if written is not None and written == self.exports.file:
             self.keeping.saved(written)
         self.keeping.poll()
+        self.saving.poll(self.document)
         return written is not None or changed
 
     def apply(self, update: Update[Work]) -> bool:
@@ -358,6 +385,18 @@ class Session(SessionState):
                 else Making(k, "first dots", source, style)
             ),
         )
+
+    def _warn(self, job: str, n_dots: int, n_pixels: int = 0) -> None:
+        """Say so if a job will hardly fit into memory."""
+        if text := preflight.warning(job, n_dots, n_pixels):
+            self.messages.say(text, WARNING)
+
+    def _pixels_at(self, path: Path, options: Mapping[str, Any]) -> int:
+        """Return how many pixels an export has, if any."""
+        page, dpi = self.drawing.page if self.drawing is not None else None, options.get("dpi")
+        if page is None or not dpi or path.suffix.lower() not in (".png", ".tif", ".tiff"):
+            return 0
+        return int(page.width_mm * page.height_mm * (float(dpi) / 25.4) ** 2)
 
     def launch(self, run: Callable[[], Iterator[Work]], job: Callable[[int], Job]) -> None:
         """Let the worker run something; `job` makes the activity of the request's number."""
@@ -416,6 +455,7 @@ class Session(SessionState):
             self.document.history.close()
         self.document, self._read, self.notes = document, source, ()
         self.exports.begin_drawing(file, None if lost else document)
+        self.saving.begin_drawing(self.name)
         self.keeping.open(document, self.name, file, lost)
         self.revision += 1
 

@@ -76,6 +76,17 @@ class View:
         self.following, self._to_go = True, 0.0
         self.camera = self._fitted()
 
+    def look(self, camera: Camera, *, whole_page: bool) -> None:
+        """Look as a camera does, as far as the page allows; `whole_page` fits it, turned so."""
+        self.camera = camera
+        if whole_page:
+            self.fit()
+            return
+        self.following, self._to_go = False, 0.0
+        low, high = self._limits()
+        self.camera = replace(camera, px_per_mm=min(max(camera.px_per_mm, low), high))
+        self._hold()
+
     def show_box(self, low_mm: Point, high_mm: Point) -> None:
         """Show a rectangle of the page as large as it fits."""
         self.following, self._to_go = False, 0.0

@@ -39,13 +39,12 @@ def read_only(source: Source, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
 def open_drawing(path: Path, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
     """Open a drawing that was saved."""
     yield Work(READ)
-    from stippler.drawing.document import Document
-    from stippler.opening import open_file
+    from stippler.opening import open_document
 
-    document = Document(open_file(path))
+    document, note = open_document(path)
     yield Work(READ, 1, 1)
     yield from make_ready(is_warm=is_warm)
-    yield Work(PREPARE, 1, 1, document=document)
+    yield Work(PREPARE, 1, 1, document=document, note=note)
 
 
 def recover(lost: Lost, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
@@ -62,8 +61,9 @@ def recovered(lost: Lost) -> Document:
     from stippler.files.native.drawing_file import drawing_of
     from stippler.files.native.edit_log import replay
     from stippler.files.read.picture import picture_of_bytes
+    from stippler.opening import keeping
 
     members, journal = lost.read()
-    document = Document(drawing_of(members, picture_of_bytes, lost.name)[0])
+    document = Document(keeping(*drawing_of(members, picture_of_bytes, lost.name)))
     replay(document, journal.records, picture_of_bytes)
     return document

@@ -64,6 +64,8 @@ class Work:
         A drawing that was kept; nobody else holds it.
     notes : tuple of str
         What a person should know of how the picture was read.
+    note : str
+        What a person should know of it.
     area : int
         Whose dots `progress` tells of.
     finished : tuple of (area, Progress)
@@ -80,5 +82,6 @@ class Work:
     points_mm: NDArray[np.float64] | None = None
     document: Document | None = None
     notes: tuple[str, ...] = ()
+    note: str = ""
     area: int = 0
     finished: tuple[tuple[int, Progress], ...] = ()

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots, first_seeds
+from stippler.drawing.polarity import Polarity
 from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.shapes.dot_shape import check_shapes
 from stippler.kernels.tone.union_share import shares_of_union
-
-Origin = tuple[float, float]
+from stippler.render.paper import Origin
 
 _STRIDE = gpu_dots.N_WORDS * gpu_dots.WORD_BYTES
 _GAP = 256  # rows that stand still are uploaded too where that saves a call
@@ -29,6 +29,8 @@ class DotBuffer:
     is_round, is_rough, has_flags : bool
         Whether all are round and smooth; any is rough; any is fixed or selected. After partial
         updates they may be wrong towards the costlier side.
+    polarity : Polarity
+        How dots are painted, by their areas; what is set counts from the next `set` on.
     max_radius_mm, max_elongation : float
         At least as large as any dot's.
     """
@@ -40,6 +42,7 @@ class DotBuffer:
         self.gl = ctx.buffer(reserve=self._room * _STRIDE)
         self.n = self.revision = 0
         self._knows_shares = True
+        self.polarity = Polarity()
         self._row_of_slot = self._slot_of_row = np.empty(0, np.int64)
         self._forget()
 
@@ -59,7 +62,7 @@ class DotBuffer:
         check_shapes(dots.elongation, dots.angle_rad, dots.roughness)
         self._resize(len(dots))
         self._order(dots.position_mm, origin_mm)
-        gpu_dots.pack(dots, origin_mm, selected, self._row_of_slot, self.rows)
+        self._pack(dots, origin_mm, selected, self._row_of_slot, self.rows)
         self._forget()
         self.has_flags = bool(dots.fixed.any() or selected.any())
         self._knows_shares = False
@@ -110,7 +113,7 @@ class DotBuffer:
         slots = np.union1d(self._slot_of_row[rows], closed)
         changed = self._row_of_slot[slots]
         fresh = gpu_dots.words(len(slots))
-        gpu_dots.pack(dots, origin_mm, selected, changed, fresh)
+        self._pack(dots, origin_mm, selected, changed, fresh)
         self.has_flags = self.has_flags or bool((dots.is_fixed(rows) | selected[rows]).any())
         self._words[slots] = fresh
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
@@ -125,10 +128,36 @@ class DotBuffer:
         if self._knows_shares:
             return
         self._knows_shares = True
-        shares = shares_of_union(self.rows.view(np.float32))
+        shares = self._shares()
         if self.n and shares.min() < 1.0:
             gpu_dots.set_shares(self.rows, shares)
             self._upload()
+
+    def _shares(self) -> NDArray[np.float32]:
+        """Return what each dot adds to the union of all that are painted as it is."""
+        discs = self.rows.view(np.float32)
+        if self.polarity.is_plain:
+            return shares_of_union(discs)
+        shares = np.ones(self.n, np.float32)
+        kind = gpu_dots.flags_of(self.rows) & (gpu_dots.IN_WHITE | gpu_dots.UNSEEN)
+        for seen in (0, gpu_dots.IN_WHITE):
+            which = np.flatnonzero(kind == seen)
+            shares[which] = shares_of_union(discs[which])
+        return shares
+
+    def _pack(
+        self,
+        dots: Dots,
+        origin_mm: Origin,
+        selected: NDArray[np.bool_],
+        rows: NDArray[np.int64],
+        out: NDArray[np.uint32],
+    ) -> None:
+        if self.polarity.is_plain:
+            gpu_dots.pack(dots, origin_mm, selected, rows, out)
+        else:
+            paint = self.polarity.of(dots.area[rows])
+            gpu_dots.pack(dots, origin_mm, selected, rows, out, paint)
 
     def _order(self, position_mm: NDArray[np.float64], origin_mm: Origin) -> None:
         size_mm = (2 * origin_mm[0], 2 * origin_mm[1])

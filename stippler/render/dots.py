@@ -15,10 +15,10 @@ from stippler.drawing.preview import Preview
 from stippler.drawing.shape_change import MAX_RADIUS_MM, ShapeChange
 from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.shapes.dot_shape import MAX_ELONGATION, MAX_ROUGH
-from stippler.render.dot_buffer import DotBuffer, Origin
+from stippler.render.dot_buffer import DotBuffer
 from stippler.render.frame import Frame
 from stippler.render.ink import MARGIN_PX
-from stippler.render.paper import Color
+from stippler.render.paper import Color, Origin, page_uniforms
 from stippler.render.preview import PreviewUniforms, defines
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
@@ -60,10 +60,22 @@ class DotsPass:
         span = ctx.info["GL_POINT_SIZE_RANGE"]
         self._reach_px = min(MARGIN_PX - 2.0, float(span[1]) / 2 - 1.0)
 
-    def draw(self, buffer: DotBuffer, frame: Frame, origin_mm: Origin, whole: Size) -> None:
-        """Add the ink of all dots seen by a frame's camera to the ink target in use, of a size."""
+    def draw(
+        self,
+        buffer: DotBuffer,
+        frame: Frame,
+        origin_mm: Origin,
+        whole: Size,
+        *,
+        in_white: bool = False,
+    ) -> None:
+        """Add dots seen by a frame's camera to the ink target in use, of a size.
+
+        All black dots, or all white ones.
+        """
         camera, preview = frame.camera, frame.preview
-        self.n_draw_calls = 0
+        if not in_white:
+            self.n_draw_calls = 0
         if buffer.n == 0:
             return
         if buffer.gl is not self._bound:
@@ -74,10 +86,13 @@ class DotsPass:
         self._choose(buffer, frame, origin_mm)
         set_state(self._ctx, "add", sprites=True)
         kind = _kind(buffer, camera, preview)
-        uniforms = _uniforms(camera, whole, origin_mm) | self._preview.of(preview, kind, origin_mm)
+        uniforms = self._uniforms(frame, whole, kind, origin_mm)
         names = (kind, *defines(preview, kind))
+        if not buffer.polarity.is_plain:
+            names = (*names, "POLARITY")
+            uniforms["u_paint"] = gpu_dots.IN_WHITE * in_white
         if kind == "ROUGH" and preview is None and self._all_small:
-            self._run_parts(buffer, camera, uniforms)
+            self._run_parts(buffer, camera, names, uniforms)
         else:
             self._run_chosen(buffer, names, uniforms)
 
@@ -90,17 +105,25 @@ class DotsPass:
         camera, preview = frame.camera, frame.preview
         set_state(self._ctx, "over", sprites=True)
         kind = _kind(buffer, camera, preview)
-        uniforms = _uniforms(camera, frame.size_px, origin_mm)
-        uniforms |= self._preview.of(preview, kind, origin_mm)
+        uniforms = self._uniforms(frame, frame.size_px, kind, origin_mm)
         uniforms |= {"u_fixed_color": colors[0], "u_selected_color": colors[1]}
         self._run_chosen(buffer, (kind, *defines(preview, kind), "MARKS"), uniforms)
 
-    def _run_parts(self, buffer: DotBuffer, camera: Camera, uniforms: dict[str, Any]) -> None:
+    def _uniforms(
+        self, frame: Frame, size_px: Size, kind: str, origin_mm: Origin
+    ) -> dict[str, Any]:
+        uniforms = page_uniforms(frame.camera, size_px, origin_mm)
+        uniforms["u_px_per_mm"] = frame.camera.px_per_mm
+        return uniforms | self._preview.of(frame.preview, kind, origin_mm)
+
+    def _run_parts(
+        self, buffer: DotBuffer, camera: Camera, names: tuple[str, ...], uniforms: dict[str, Any]
+    ) -> None:
         """Draw by the shader for rough dots only those that are large enough to look rough."""
         parts = self._parts
         parts.find(buffer, _ROUGH_FROM_PX / camera.px_per_mm)
         for kind, part in (("SMOOTH", parts.smooth), ("ROUGH", parts.rough)):
-            self._run((kind, "POINTS"), buffer.gl, part.n, uniforms, part.gl)
+            self._run((kind, *names[1:], "POINTS"), buffer.gl, part.n, uniforms, part.gl)
 
     def _run_chosen(
         self, buffer: DotBuffer, names: tuple[str, ...], uniforms: dict[str, Any]
@@ -270,15 +293,3 @@ def _share_shown(inside: tuple[float, float, float, float], origin_mm: Origin) -
     for low, high, half in zip(inside[:2], inside[2:], origin_mm, strict=True):
         share *= max(min(high, half) - max(low, -half), 0.0) / (2 * half)
     return share
-
-
-def _uniforms(camera: Camera, whole_px: Size, origin_mm: Origin) -> dict[str, Any]:
-    upwards = np.array([[1.0], [-1.0]])
-    matrix = (upwards * camera.linear()).T.astype(np.float32)
-    return {
-        "u_page_to_px": np.ascontiguousarray(matrix),
-        "u_center_mm": tuple(camera.center_mm[i] - origin_mm[i] for i in (0, 1)),
-        "u_middle_px": (whole_px[0] / 2, whole_px[1] / 2),
-        "u_px_to_clip": (2 / whole_px[0], 2 / whole_px[1]),
-        "u_px_per_mm": camera.px_per_mm,
-    }

@@ -18,8 +18,6 @@ class InkTarget:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._program = Program(ctx, "page.vert", "resolve.frag")
-        self._vertices = ctx.vertex_array(self._program.gl, [])
         self._texture: moderngl.Texture | None = None
         self._framebuffer: moderngl.Framebuffer | None = None
 
@@ -43,30 +41,11 @@ class InkTarget:
         self._framebuffer = self._ctx.framebuffer([self._texture])
         return self._framebuffer
 
-    def lay(
-        self,
-        camera: Camera,
-        size_px: Size,
-        page_mm: tuple[float, float],
-        ink: Color,
-        ground: Color | None,
-    ) -> None:
-        """Ink the page in the framebuffer in use, over a ground or over what is there."""
+    def use(self, unit: int) -> None:
+        """Let a texture unit read it."""
         assert self._texture is not None
-        set_state(self._ctx, "none" if ground else "over")
-        self._ctx.clear_samplers(0, 1)
-        self._texture.use(0)
-        self._program.set(
-            {
-                "u_page_to_clip": page_matrix(camera, size_px),
-                "u_rect_mm": (0.0, 0.0, *page_mm),
-                "u_ink": 0,
-                "u_margin_px": MARGIN_PX,
-                "u_ink_color": ink,
-                "u_ground": (*ground, 1.0) if ground else (0.0, 0.0, 0.0, 0.0),
-            }
-        )
-        self._vertices.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        self._ctx.clear_samplers(unit, unit + 1)
+        self._texture.use(unit)
 
     def _release_target(self) -> None:
         if self._framebuffer is not None:
@@ -76,5 +55,67 @@ class InkTarget:
     def release(self) -> None:
         """Free the GL objects."""
         self._release_target()
-        self._vertices.release()
-        self._program.release()
+
+
+class InkPass:
+    """Lays what was gathered on the page.
+
+    Attributes
+    ----------
+    ink : InkTarget
+        Of black dots and of lines.
+    black, white : InkTarget
+        Of grounds, and of the white dots on them; only where there are any.
+    """
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self.ink, self.black, self.white = InkTarget(ctx), InkTarget(ctx), InkTarget(ctx)
+        self._programs: dict[bool, tuple[Program, moderngl.VertexArray]] = {}
+
+    def lay(
+        self,
+        camera: Camera,
+        size_px: Size,
+        page_mm: tuple[float, float],
+        ink: Color,
+        under: Color | None,
+        *,
+        inverse: bool,
+    ) -> None:
+        """Ink the page in the framebuffer in use, over a colour or over what is there.
+
+        `inverse`: grounds and white dots were gathered too.
+        """
+        program, vertices = self._program(inverse)
+        set_state(self._ctx, "none" if under else "over")
+        gathered = {"u_ink": self.ink}
+        if inverse:
+            gathered |= {"u_black": self.black, "u_white": self.white}
+        for unit, target in enumerate(gathered.values()):
+            target.use(unit)
+        program.set(
+            {
+                "u_page_to_clip": page_matrix(camera, size_px),
+                "u_rect_mm": (0.0, 0.0, *page_mm),
+                "u_margin_px": MARGIN_PX,
+                "u_ink_color": ink,
+                "u_ground": (*under, 1.0) if under else (0.0, 0.0, 0.0, 0.0),
+            }
+            | {name: unit for unit, name in enumerate(gathered)}
+        )
+        vertices.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+    def _program(self, inverse: bool) -> tuple[Program, moderngl.VertexArray]:
+        if inverse not in self._programs:
+            program = Program(self._ctx, "page.vert", "resolve.frag", ["INVERSE"] * inverse)
+            self._programs[inverse] = program, self._ctx.vertex_array(program.gl, [])
+        return self._programs[inverse]
+
+    def release(self) -> None:
+        """Free the GL objects."""
+        for target in (self.ink, self.black, self.white):
+            target.release()
+        for program, vertices in self._programs.values():
+            vertices.release()
+            program.release()

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.drawing.line import Line
-from stippler.render.paper import Color
+from stippler.render.paper import Color, Origin, page_uniforms
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
-Origin = tuple[float, float]
 Rows = NDArray[np.float32]
 
 _N_FLOATS = 8
@@ -111,7 +110,7 @@ class LinesPass:
         if buffer.is_empty:
             return
         set_state(self._ctx, "most")
-        self._run("", buffer.ink, _uniforms(camera, whole_px, origin_mm))
+        self._run("", buffer.ink, _scaled(camera, whole_px, origin_mm))
 
     def draw_guides(
         self, buffer: LineBuffer, camera: Camera, size_px: Size, origin_mm: Origin, color: Color
@@ -120,8 +119,7 @@ class LinesPass:
         if not buffer.guides.n:
             return
         set_state(self._ctx, "over")
-        values = _uniforms(camera, size_px, origin_mm)
-        del values["u_px_per_mm"]
+        values = page_uniforms(camera, size_px, origin_mm)
         self._run("MARKS", buffer.guides, values | {"u_color": color, "u_half_px": _GUIDE_PX / 2})
 
     def _run(self, kind: str, segments: _Segments, uniforms: dict[str, Any]) -> None:
@@ -155,13 +153,5 @@ class LinesPass:
         self._programs.clear()
 
 
-def _uniforms(camera: Camera, whole_px: Size, origin_mm: Origin) -> dict[str, Any]:
-    upwards = np.array([[1.0], [-1.0]])
-    matrix = (upwards * camera.linear()).T.astype(np.float32)
-    return {
-        "u_page_to_px": np.ascontiguousarray(matrix),
-        "u_center_mm": tuple(camera.center_mm[i] - origin_mm[i] for i in (0, 1)),
-        "u_middle_px": (whole_px[0] / 2, whole_px[1] / 2),
-        "u_px_to_clip": (2 / whole_px[0], 2 / whole_px[1]),
-        "u_px_per_mm": camera.px_per_mm,
-    }
+def _scaled(camera: Camera, whole_px: Size, origin_mm: Origin) -> dict[str, Any]:
+    return page_uniforms(camera, whole_px, origin_mm) | {"u_px_per_mm": camera.px_per_mm}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +13,7 @@ from stippler.render.shaders import Program
 from stippler.render.state import set_state
 
 Color = tuple[float, float, float]
+Origin = tuple[float, float]
 
 SHADOW_PX = 14.0
 SHADE = 0.80  # of the desk's colour, where the shadow is deepest
@@ -19,6 +22,18 @@ SHADE = 0.80  # of the desk's colour, where the shadow is deepest
 def page_matrix(camera: Camera, size_px: Size) -> NDArray[np.float32]:
     """Return the camera's matrix as GL stores it, column after column."""
     return np.ascontiguousarray(camera.matrix(size_px).T)
+
+
+def page_uniforms(camera: Camera, size_px: Size, origin_mm: Origin) -> dict[str, Any]:
+    """Return what turns mm from an origin into pixels, y up, and those into GL's clip space."""
+    upwards = np.array([[1.0], [-1.0]])
+    matrix = (upwards * camera.linear()).T.astype(np.float32)
+    return {
+        "u_page_to_px": np.ascontiguousarray(matrix),
+        "u_center_mm": tuple(camera.center_mm[i] - origin_mm[i] for i in (0, 1)),
+        "u_middle_px": (size_px[0] / 2, size_px[1] / 2),
+        "u_px_to_clip": (2 / size_px[0], 2 / size_px[1]),
+    }
 
 
 class PaperPass:

@@ -7,7 +7,8 @@ import moderngl
 from stippler.drawing.preview import Preview
 from stippler.render.dots import DotsPass
 from stippler.render.frame import GUIDE, Frame
-from stippler.render.ink import InkTarget
+from stippler.render.ground import GroundPass
+from stippler.render.ink import InkPass
 from stippler.render.lines import LinesPass
 from stippler.render.paper import PaperPass
 from stippler.render.reference import ReferencePass
@@ -34,7 +35,8 @@ class Renderer:
         self._reference = ReferencePass(ctx)
         self._lines = LinesPass(ctx)
         self._dots = DotsPass(ctx)
-        self._ink = InkTarget(ctx)
+        self._ground = GroundPass(ctx)
+        self._ink = InkPass(ctx)
 
     @property
     def n_draw_calls(self) -> int:
@@ -62,22 +64,29 @@ class Renderer:
         if shows_reference:
             self._reference.draw(scene.reference, frame)
         if has_ink:
-            ground = frame.paper if is_bare else None
-            self._ink.lay(camera, size_px, scene.page_mm, frame.ink, ground)
+            under = frame.paper if is_bare else None
+            inverse = frame.dots and scene.grounds.n > 0
+            self._ink.lay(camera, size_px, scene.page_mm, frame.ink, under, inverse=inverse)
         if frame.marks and frame.dots:
             self._dots.draw_marks(scene.dots, frame, scene.origin_mm, frame.marks)
         if frame.marks:
             self._lines.draw_guides(scene.lines, camera, size_px, scene.origin_mm, GUIDE)
 
     def _gather(self, frame: Frame) -> None:
-        """Gather the ink of lines, then that of dots."""
-        scene = self.scene
-        whole = self._ink.begin(frame.size_px)
-        self._lines.draw(scene.lines, frame.camera, whole, scene.origin_mm)
+        """Gather the ink of lines and black dots; grounds and white dots by themselves."""
+        scene, ink, origin_mm = self.scene, self._ink, self.scene.origin_mm
+        whole = ink.ink.begin(frame.size_px)
+        self._lines.draw(scene.lines, frame.camera, whole, origin_mm)
         if frame.dots:
-            self._dots.draw(scene.dots, frame, scene.origin_mm, whole)
+            self._dots.draw(scene.dots, frame, origin_mm, whole)
+            if scene.grounds.n:
+                ink.black.begin(frame.size_px)
+                self._ground.draw(scene.grounds, frame.camera, whole, origin_mm)
+                ink.white.begin(frame.size_px)
+                self._dots.draw(scene.dots, frame, origin_mm, whole, in_white=True)
 
     def release(self) -> None:
         """Free every GL object, those of the scene too."""
-        for one in (self._lines, self._dots, self._ink, self._reference, self._paper, self.scene):
+        passes = (self._lines, self._dots, self._ground, self._ink, self._reference, self._paper)
+        for one in (*passes, self.scene):
             one.release()

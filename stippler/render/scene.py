@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -11,13 +11,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from stippler.drawing import records
 from stippler.drawing.dots import Dots
+from stippler.drawing.polarity import Polarity, grounds_of, polarity_of
 from stippler.drawing.reference import Reference
+from stippler.drawing.visible import NONE, sized_zero
 from stippler.render.dot_buffer import DotBuffer
+from stippler.render.ground import GroundBuffer
 from stippler.render.lines import LineBuffer
 from stippler.render.reference import ReferenceTexture
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
+    from stippler.drawing.drawing import Drawing
+    from stippler.drawing.partition import Partition
 
 _NO_IDS: NDArray[np.int64] = np.empty(0, np.int64)
 
@@ -30,6 +35,8 @@ class Scene:
     page_mm : (width, height)
     dots : DotBuffer
     lines : LineBuffer
+    grounds : GroundBuffer
+        Areas of white dots on black.
     reference : ReferenceTexture
     """
 
@@ -37,11 +44,13 @@ class Scene:
         self.page_mm = (1.0, 1.0)
         self.dots = DotBuffer(ctx)
         self.lines = LineBuffer(ctx)
+        self.grounds = GroundBuffer(ctx)
         self.reference = ReferenceTexture(ctx)
         self._selected = np.zeros(0, np.bool_)
         self._selected_ids = _NO_IDS
         self._document: Document | None = None  # whose dots are there
         self._cursor = 0  # how far its changes are
+        self._hidden = NONE
 
     @property
     def n_dots(self) -> int:
@@ -55,13 +64,20 @@ class Scene:
 
     # --- a document ---------------------------------------------------------------------------
 
-    def sync(self, document: Document, selected: NDArray[np.int64] = _NO_IDS) -> None:
+    def sync(
+        self,
+        document: Document,
+        selected: NDArray[np.int64] = _NO_IDS,
+        hidden: frozenset[int] = NONE,
+    ) -> None:
         """Bring what has changed in a document to the GPU.
 
         Parameters
         ----------
         selected : ids of dots
             An array that is not changed afterwards.
+        hidden : ids of areas
+            Their dots are not seen.
 
         Notes
         -----
@@ -72,11 +88,17 @@ class Scene:
         page = document.drawing.page
         is_other = is_other or self.page_mm != (page.width_mm, page.height_mm)
         self.page_mm = (page.width_mm, page.height_mm)
-        changed, dots, rows = document.changes.since(cursor), document.dots, None
+        is_other = is_other or hidden != self._hidden
+        self._hidden = hidden
+        changed, rows = document.changes.since(cursor), None
+        dots = sized_zero(document.dots, hidden)
         chosen = np.zeros(len(dots), np.bool_)
         there = document.rows(selected)
         chosen[there[there >= 0]] = True
-        if not is_other:
+        is_painted_anew = False
+        if is_other or any(changed.has(kind) for kind in (records.AREA, records.STYLE)):
+            is_painted_anew = self.set_polarity(document.drawing, lambda: document.partition)
+        if not is_other and not is_painted_anew:
             rows = changed.rows
         if rows is None or self.n_dots == 0:
             self.set_dots(dots, chosen)
@@ -98,6 +120,8 @@ class Scene:
         """Show an empty page."""
         self._document = None
         self.set_page(width_mm, height_mm)
+        self.dots.polarity = Polarity()
+        self.grounds.set((), self.origin_mm)
         self.set_dots(Dots.none(), np.zeros(0, np.bool_))
         self.set_lines({})
 
@@ -106,6 +130,26 @@ class Scene:
     def set_page(self, width_mm: float, height_mm: float) -> None:
         """Set the size of the paper; call it before `set_dots`."""
         self.page_mm = (float(width_mm), float(height_mm))
+
+    def set_polarity(
+        self, drawing: Drawing, partition: Callable[[], Partition] | None = None
+    ) -> bool:
+        """Hold which areas are white on black, and which are hidden, from the next `set_dots` on.
+
+        Return whether dots are painted otherwise than before.
+        """
+        polarity, before = polarity_of(drawing), self.dots.polarity
+        self.dots.polarity = polarity
+        self.grounds.set(grounds_of(drawing, polarity, partition).values(), self.origin_mm)
+        return polarity != before
+
+    def set_drawing(self, drawing: Drawing) -> None:
+        """Hold all of a drawing but its reference, as it is now."""
+        self._document = None
+        self.set_page(drawing.page.width_mm, drawing.page.height_mm)
+        self.set_polarity(drawing)
+        self.set_dots(drawing.dots)
+        self.set_lines(drawing.lines)
 
     def set_lines(self, lines: Mapping[int, Any]) -> None:
         """Hold lines by their ids; cheap for those that are there already."""
@@ -159,4 +203,5 @@ class Scene:
         """Free every GL object."""
         self.dots.release()
         self.lines.release()
+        self.grounds.release()
         self.reference.release()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 
@@ -9,8 +10,10 @@ from imgui_bundle import imgui
 
 from stippler.drawing.preview import Preview
 from stippler.editor.area_acts import AreaActs
+from stippler.editor.area_jobs import AreaJobs, Step
 from stippler.editor.batches import parts_of
 from stippler.editor.commands import Key
+from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
     CloseAsked,
     Dropped,
@@ -33,6 +36,7 @@ from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
 from stippler.jobs.work import PREPARE
+from stippler.jobs.worker import Worker
 from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import MAP_EVERY_S, Canvas
@@ -43,10 +47,11 @@ from stippler.ui.canvas.peek import Peek
 from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.canvas.rulers import draw_rulers
 from stippler.ui.field_commands import FieldCommands
+from stippler.ui.panels.areas import AreasPanel
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
 from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
+from stippler.ui.panels.layout import AREAS, DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice, draw_preparing
@@ -110,15 +115,20 @@ class Editor:
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
+        self._area_worker: Worker[Step] = Worker(window.wake)
+        self.area_jobs = AreaJobs(self._area_worker, session.messages)
+        self.area_acts = AreaActs(session, self.painting, self.area_jobs)
+        self._areas_panel = AreasPanel(self.area_acts)
         self.lines = Lines(session, self.painting)
-        self.area_acts = AreaActs(session, self.painting)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
+        self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self.panels = Panels(
             {
                 DRAWING: self._draw_drawing,
                 TOOL: self._draw_tool,
+                AREAS: lambda: self._areas_panel.draw(self.widgets, self.commands),
                 SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
                 VIEW: self._draw_view,
                 HISTORY: self._draw_history,
@@ -186,7 +196,7 @@ class Editor:
         if events:
             self._schedule.note_input(began)
             self._may_have_changed = True
-        if self.session.poll() | self.popups.exporting.poll():
+        if self.session.poll() | self.area_jobs.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -211,11 +221,22 @@ class Editor:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
         self._keep()
-        self.popups.recovery.close()
-        self.popups.exporting.close()
+        self._area_worker.close()
+        self.popups.close()
         self.canvas.close()
         self._samples.close()
         self.gui.close()
+
+    def renew_graphics(self) -> None:
+        """Make GL's context and all that is in it anew: the drawing never lives there alone."""
+        with contextlib.suppress(Exception):  # a lost context may refuse anything
+            self.canvas.close()
+            self._samples.close()
+        self.gui.leave()
+        self._window.renew()
+        self.gui.join()
+        self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self.popups.recovery.renew(self._window.ctx)
 
     # --- one frame --------------------------------------------------------------------------
 
@@ -233,6 +254,7 @@ class Editor:
                 self.canvas.draw(
                     self.session,
                     self.painting.toolbox.selection,
+                    self.painting.toolbox.areas.solo,
                     self.view.camera,
                     self.look,
                     self._preview,
@@ -242,6 +264,9 @@ class Editor:
             screen.use()
             screen.clear(*self.look.theme.desk, 1.0)
             self.gui.draw()
+        if self._window.is_lost:
+            self.renew_graphics()
+            self.session.messages.say("the graphics driver was reset; nothing is lost", WARNING)
         self.lens_key.note_frame(self._window.now_s)
         name, changed = self.session.name, "*" if self.session.unsaved else ""
         self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
@@ -361,7 +386,8 @@ class Editor:
 
     def _draw_overlay(self, area: Rect) -> None:
         tool, document = self.painting.toolbox.tool, self.session.document
-        if document is not None and tool is not None and tool.shows_areas:
+        seen = self.panels.is_in_front(AREAS) or (tool is not None and tool.shows_areas)
+        if document is not None and seen:
             choice = self.painting.toolbox.areas
             self._area_overlay.draw(document, choice, self.view, area, self._ratio)
         draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
@@ -428,6 +454,7 @@ class Editor:
         self.view.resize((round((area[2] - area[0]) * ratio), round((area[3] - area[1]) * ratio)))
         if self.session.drawing is not None:
             self.view.show(self.session.drawing.page)
+            self._desk.follow()
 
     def _take_guarded(self, event: Event, *, for_panels: bool) -> None:
         """Take an event; what fails is told, and those after it are taken as ever."""

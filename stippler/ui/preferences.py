@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.drawing import MAX_PAGE_MM
 from stippler.drawing.picture_values import TONES
 from stippler.drawing.style import PARAMETERS, Style
+from stippler.editor.saving import MOST_AUTOSAVE_MIN, MOST_BACKUPS, Wishes
 from stippler.settings import put_aside, read_document, write_document, write_text
 from stippler.ui.look import Look
 from stippler.ui.theme import DARK, LIGHT
@@ -54,6 +55,7 @@ class Preferences:
     look: Look = field(default_factory=Look)
     values: dict[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
+    saving: Wishes = field(default_factory=Wishes)
     closed: list[str] = field(default_factory=list)
     recent: list[Path] = field(default_factory=list)
     ran: list[str] = field(default_factory=list)
@@ -135,6 +137,7 @@ class Preferences:
             "look": {**look, "theme": self.look.theme.name},
             "values": self.values,
             "window": self.place.as_dict(),
+            "saving": asdict(self.saving),
             "closed_panels": self.closed,
             "recent_files": [str(path) for path in self.recent],
             "recent_commands": self.ran,
@@ -147,6 +150,7 @@ class Preferences:
             "look": self._take_look,
             "values": self._take_values,
             "window": self._take_place,
+            "saving": self._take_saving,
             "closed_panels": self._take_closed,
             "recent_files": self._take_recent,
             "recent_commands": self._take_ran,
@@ -173,6 +177,8 @@ class Preferences:
         self.look.opacity = min(max(self.look.opacity, 0.0), 1.0)
 
     def _take_values(self, data: dict[str, Any]) -> None:
+        if not data:  # none were ever in use
+            return
         known = {about.name for about in PARAMETERS} - set(_NOT_KEPT)
         values = {name: value for name, value in data.items() if name in known}
         style = Style.from_json(values)  # raises what a bad value deserves
@@ -184,6 +190,15 @@ class Preferences:
 
     def _take_place(self, data: dict[str, Any]) -> None:
         self.place = Place.from_dict(data)
+
+    def _take_saving(self, data: dict[str, Any]) -> None:
+        first, most = Wishes(), {"n_backups": MOST_BACKUPS, "autosave_min": MOST_AUTOSAVE_MIN}
+        for about in fields(Wishes):
+            usual = getattr(first, about.name)
+            value = _like(usual, data.get(about.name, usual))
+            if about.name in most:
+                value = min(max(value, 0), most[about.name])
+            setattr(self.saving, about.name, value)
 
     def _take_closed(self, names: list[Any]) -> None:
         self.closed = [str(name) for name in names]

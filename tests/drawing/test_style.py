@@ -39,7 +39,10 @@ STYLES = st.fixed_dictionaries({about.name: values_of(about) for about in PARAME
 @given(STYLES, st.text(max_size=20))
 def test_every_style_comes_back_from_json(values: dict[str, Any], name: str) -> None:
     if values["sizes"] == "regions":
-        values["first_dots"] = "pulse-density"
+        values["first_dots"], values["spacing"] = "pulse-density", "even"
+    if values["n_dots"] is not None:
+        values["density_per_cm2"] = None
+    values["tone_white"] *= 0.9 * values["tone_black"]
     style = Style(**values, name=name)
     assert Style.from_json(json.loads(json.dumps(style.to_json()))) == style
 
@@ -63,6 +66,9 @@ def test_what_is_no_value_is_refused_by_name(about: Parameter) -> None:
         ({"n_dots": MAX_DOTS + 1}, r"dots: 20000001 is out of range; give 1 to 20,000,000"),
         ({"glitter": 1}, r"style: 'glitter' is unknown; one of n_dots, "),
         ({"name": 3}, r"style: 3 is no name"),
+        ({"n_dots": 5, "density_per_cm2": 3.0}, r"density: stands beside a number of dots"),
+        ({"tone_white": 0.5, "tone_black": 0.5}, r"tone white: 0.5 is not below 0.5"),
+        ({"sizes": "regions", "spacing": "square"}, r"sizes: square has no regions"),
     ],
 )
 def test_a_bad_style_of_a_file_is_told_in_a_line(data: dict[str, Any], says: str) -> None:

@@ -5,6 +5,7 @@ import pytest
 
 from stippler.drawing.planar.nodes import handles_at, is_smooth
 from stippler.editor.events import Mods
+from stippler.editor.tools.node_source import BorderNodes
 from tests.editor.area_hands import AreaHands, box, same, state
 
 SHIFT, ALT = Mods(shift=True), Mods(alt=True)
@@ -85,7 +86,7 @@ def test_a_node_is_added_smoothed_bent_and_removed(hands):
     desk = hands.toolbox.desk(hands.document, lambda x, y: (x, y), 10.0)
     hands.tool.bend(desk, smooth=True)
     hands.check()
-    (held,) = hands.tool.held
+    held = next(h for h in hands.tool.held if isinstance(h.source, BorderNodes))
     ((k, i),) = held.nodes
     assert is_smooth(held.index.paths[k], i)
     handle = handles_at(held.index.paths[k], i)["out"]

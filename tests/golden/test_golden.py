@@ -11,13 +11,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
+from shapely.geometry import Point
 
 from stippler import headless
 from stippler.camera import Camera
+from stippler.drawing.area import Area
 from stippler.drawing.dots import Dots
-from stippler.drawing.drawing import Page
+from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.pens import PENS, pen_named
+from stippler.drawing.style import WHITE_ON_BLACK, Style
 from stippler.render.frame import Frame
 from stippler.render.renderer import Renderer
 from stippler.render.state import release_target
@@ -37,11 +41,15 @@ def picture():
     """Return a function that draws dots as (h, w) uint8."""
     ctx = headless.open_context()
     renderer = Renderer(ctx)
-    renderer.scene.set_page(PAGE.width_mm, PAGE.height_mm)
     target = ctx.framebuffer([ctx.renderbuffer(SIZE, 1)])
 
-    def drawn(dots: Dots, scale: float = 8.0, paper=WHITE, ink=BLACK) -> np.ndarray:
-        renderer.scene.set_dots(dots)
+    def drawn(dots: Dots, scale: float = 8.0, paper=WHITE, ink=BLACK, night=None) -> np.ndarray:
+        drawing = Drawing.blank(PAGE)
+        drawing.dots = dots
+        if night is not None:
+            drawing.styles[1] = Style(polarity=WHITE_ON_BLACK)
+            drawing.areas[1] = Area("night", night, 1)
+        renderer.scene.set_drawing(drawing)
         camera = Camera((8.0, 6.0), scale)
         renderer.draw(Frame(camera, SIZE, paper=paper, desk=paper, ink=ink), target)
         data = np.frombuffer(target.read(components=1, alignment=1), np.uint8)
@@ -98,6 +106,15 @@ def test_white_on_black(picture):
     compare("polarity-white-on-black", seen)
 
 
+@pytest.mark.parametrize("zoom", ["small", "large"])
+def test_an_area_of_white_dots(picture, zoom):
+    """A disc of white dots on black in a page of black ones; its ground is clean to its border."""
+    dots = dots_of("quill")
+    night = Point(8.0, 6.0).buffer(4.0 if zoom == "small" else 1.1)
+    dots.area[:] = shapely.contains_xy(night, *dots.position_mm.T)
+    compare(f"inverse-area-{zoom}", picture(dots, ZOOMS[zoom], night=night))
+
+
 @pytest.mark.parametrize("pen", [pen.name for pen in PENS])
 def test_any_missing_dot_fails(picture, pen):
     """Each dot in turn is left out: none goes unnoticed."""
@@ -129,4 +146,5 @@ def test_a_failure_leaves_pictures_to_look_at(picture, monkeypatch, tmp_path):
 def test_nothing_kept_is_unused():
     used = {f"pen-{pen.name}" for pen in PENS}
     used |= {f"zoom-{zoom}" for zoom in ZOOMS} | {"polarity-white-on-black"}
+    used |= {"inverse-area-small", "inverse-area-large"}
     assert {path.stem for path in HERE.glob("*.png")} == used

@@ -161,7 +161,7 @@ def test_dots_too_small_to_look_rough_are_drawn_smooth_and_look_the_same(
     monkeypatch.setattr(
         page._dots,
         "_run_parts",
-        lambda buffer, _, uniforms: page._dots._run_chosen(buffer, ("ROUGH",), uniforms),
+        lambda buffer, _, names, uniforms: page._dots._run_chosen(buffer, names, uniforms),
     )
     np.testing.assert_allclose(ink(camera, size), seen, atol=1.5 / 255)
     assert page.n_draw_calls == 1

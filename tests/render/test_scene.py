@@ -1,17 +1,22 @@
 """A scene that follows a document holds what a fresh one would, whatever happened in between."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
+from shapely.geometry import box
 
 from stippler import headless
+from stippler.drawing import records
+from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.dots import FIXED, Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
+from stippler.drawing.style import WHITE_ON_BLACK, Style
 from stippler.render.dot_buffer import DotBuffer
 from stippler.render.scene import Scene
 
@@ -42,6 +47,7 @@ def assert_like_a_fresh_one(ctx, scene: Scene, document: Document, selected) -> 
     fresh.sync(document, selected)
     assert scene.n_dots == fresh.n_dots == len(document.dots)
     assert np.array_equal(by_row(scene.dots), by_row(fresh.dots))
+    assert scene.grounds.n == fresh.grounds.n
     fresh.release()
 
 
@@ -88,6 +94,22 @@ class SceneMachine(RuleBasedStateMachine):
     def select(self, seed):
         rng = np.random.default_rng(seed)
         self.selected = np.unique(rng.integers(0, 100, 9))
+
+    @precondition(lambda self: not self.document.in_draft)
+    @rule(
+        i=st.sampled_from([0, 5]),
+        polarity=st.sampled_from(["black-on-white", WHITE_ON_BLACK]),
+        hidden=st.booleans(),
+    )
+    def paint(self, i, polarity, hidden):
+        """An area's dots become white, black or hidden; a small one comes where there is none."""
+        document = self.document
+        document.begin("paint")
+        document.set(records.STYLE, i, Style(polarity=polarity))
+        area = document.drawing.areas.get(i) or Area("five", box(4, 4, 9, 9), i)
+        document.set(records.AREA, i, replace(area, hidden=hidden))
+        document.own_by_place(np.arange(len(document.dots)))
+        document.commit()
 
     @precondition(lambda self: not self.document.in_draft)
     @rule()

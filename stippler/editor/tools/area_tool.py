@@ -76,7 +76,7 @@ class AreaTool(Tool):
             ),
             Parameter(
                 "others",
-                "Another area",
+                "Others",
                 "gives way",
                 "What an area that lies there does: it gives way, it stays as it is, or it forbids "
                 "the new one. Locked areas always stay.",

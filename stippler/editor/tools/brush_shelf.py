@@ -32,6 +32,7 @@ class BrushShelf:
         if problem:
             say(f"some brushes could not be loaded: {problem}", WARNING)
         self._used: dict[str, int] = {}  # of each type, which of its brushes
+        self._lent: list[Brush] = []
         self._deleted: list[tuple[int, Brush]] = []
         self._unsaved = bool(problem)  # what could be read is written anew
         self._due_s: float | None = None
@@ -47,6 +48,27 @@ class BrushShelf:
     def place(self, kind: str) -> int:
         """Return which of its type's brushes is in use."""
         return min(self._used.get(kind, 0), len(self.of(kind)) - 1)
+
+    def in_use(self) -> list[Brush]:
+        """Return the brush in use of each type."""
+        return [self.used(kind) for kind in dict.fromkeys(brush.kind for brush in self.brushes)]
+
+    def lend(self, brushes: list[Brush]) -> None:
+        """Use brushes that came with a drawing; those of the drawing before go.
+
+        One that is not on the shelf stands there until another drawing is opened, and is kept
+        only if a person changes it.
+        """
+        for brush in self._lent:
+            if brush in self.brushes and len(self.of(brush.kind)) > 1:
+                self.brushes.remove(brush)
+        self._lent = []
+        for brush in brushes:
+            if brush not in self.brushes:
+                at = max(k for k, b in enumerate(self.brushes) if b.kind == brush.kind) + 1
+                self.brushes.insert(at, brush)
+                self._lent.append(brush)
+            self._used[brush.kind] = self.of(brush.kind).index(brush)
 
     def use(self, kind: str, k: int) -> None:
         """Use one of a type's brushes."""
@@ -118,7 +140,8 @@ class BrushShelf:
         if self._unsaved:
             self._unsaved = False
             try:
-                save_brushes(self._path, self.brushes)
+                own = [brush for brush in self.brushes if brush not in self._lent]
+                save_brushes(self._path, own)
             except StipplerError as error:
                 self._say(str(error), WARNING)
 

@@ -111,6 +111,10 @@ class Toolbox:
             self.shelf.use_next(tool.kind.name)
         self.tool = tool
 
+    def has(self, name: str) -> bool:
+        """Return whether there is a tool of a name; an empty one is none at hand."""
+        return not name or name in self._by_name
+
     @property
     def name(self) -> str:
         """Of the tool at hand; empty without one."""

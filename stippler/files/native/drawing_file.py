@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,8 @@ import numpy as np
 
 from stippler.atomic_write import replacing
 from stippler.drawing import records
-from stippler.drawing.dots import FREE, MAX_ELONGATION, NO_CURVE, ON_CURVE, Dots
+from stippler.drawing.dot_rules import LARGEST_ID, first_fault
+from stippler.drawing.dots import FREE, NO_CURVE, ON_CURVE, Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.foreign import Foreign
 from stippler.drawing.reference import Picture
@@ -37,7 +38,6 @@ ReadPicture = Callable[[bytes, str, str], Picture]
 
 _DO = "open a backup of the drawing"
 _TABLES = (records.STYLE, records.AREA, records.LINE, records.PATTERN, records.BORDER)
-_LARGEST_ID = 2**53  # exact in any program's numbers
 _OURS = {"page", "reference", "next_id", "dots", "pictures", *_TABLES}
 _DEFAULTS: dict[str, Any] = {
     "elongation": 1.0, "angle_rad": 0.0, "roughness": 0.0, "area": 0, "constraint": FREE,
@@ -64,8 +64,15 @@ def save_drawing(drawing: Drawing, path: str | Path, more: Members | None = None
 
 
 def file_bytes(drawing: Drawing, more: Members | None = None) -> bytes:
-    """Return a drawing's file, with its thumbnail."""
+    """Return a drawing's file, with its thumbnail; steps to another state are left out."""
+    from stippler.files.native import step_file
+
     stream = io.BytesIO()
+    kept = drawing.foreign
+    steps = kept.members.get(step_file.MEMBER)
+    if steps is not None and not step_file.is_of(steps, drawing):
+        others = {name: data for name, data in kept.members.items() if name != step_file.MEMBER}
+        drawing = replace(drawing, foreign=replace(kept, members=others))
     thumbnail = {MEMBER: thumbnail_png(drawing)}
     write_container(stream, {**members_of(drawing, more), **thumbnail}, PROGRAM)
     return stream.getvalue()
@@ -241,7 +248,7 @@ def _read_next_ids(data: object, where: str) -> dict[str, int]:
     if not isinstance(data, dict):
         raise DrawingFileError("is no list of ids", f"{where}, next_id", _DO)
     for kind, i in data.items():
-        if type(i) is not int or not 0 <= i <= _LARGEST_ID:
+        if type(i) is not int or not 0 <= i <= LARGEST_ID:
             raise DrawingFileError(f"{str(i)[:40]} is no id", f"{where}, next_id {kind[:40]}", _DO)
     return dict(data)
 
@@ -313,28 +320,19 @@ def _read_dots(
 
 def _check_dots(dots: Dots, tables: Mapping[str, Mapping[int, Any]], where: str) -> None:
     """Refuse what no dot can be, and name the first that is."""
+    for f in fields(Dots):
+        if (fault := first_fault(f.name, getattr(dots, f.name))) is not None:
+            raise DrawingFileError(f"its {fault[1]}", f"{where}, dot {fault[0]}", _DO)
     on_curve = dots.constraint == ON_CURVE
     areas = np.fromiter(tables[records.AREA], np.int64)
     lines = np.fromiter(tables[records.LINE], np.int64)
-    with np.errstate(invalid="ignore"):
-        for fine, what in (
-            (np.isfinite(dots.position_mm).all(axis=1), "position is not finite"),
-            (np.isfinite(dots.radius_mm) & (dots.radius_mm > 0), "radius is not above 0"),
-            (
-                (dots.elongation >= 1) & (dots.elongation <= MAX_ELONGATION),
-                "elongation is out of range",
-            ),
-            (np.isfinite(dots.angle_rad), "angle is not finite"),
-            ((dots.roughness >= 0) & (dots.roughness <= 1), "roughness is out of range"),
-            (np.isin(dots.area, areas), "area is not in the drawing"),
-            ((dots.constraint >= FREE) & (dots.constraint <= ON_CURVE), "constraint is unknown"),
-            (~on_curve | np.isin(dots.curve, lines), "line is not in the drawing"),
-            (np.isfinite(dots.parameter), "place along a line is not finite"),
-            ((dots.id >= 0) & (dots.id < _LARGEST_ID), "id is out of range"),
-        ):
-            if not fine.all():
-                k = int(np.flatnonzero(~fine)[0])
-                raise DrawingFileError(f"its {what}", f"{where}, dot {k}", _DO)
+    for fine, what in (
+        (np.isin(dots.area, areas), "area is not in the drawing"),
+        (~on_curve | np.isin(dots.curve, lines), "line is not in the drawing"),
+    ):
+        if not fine.all():
+            k = int(np.flatnonzero(~fine)[0])
+            raise DrawingFileError(f"its {what}", f"{where}, dot {k}", _DO)
     if (np.diff(np.sort(dots.id)) == 0).any():
         raise DrawingFileError("an id stands twice", where, _DO)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from stippler.drawing.document import Document
 from stippler.drawing.edit import Edit
+from stippler.drawing.edit_check import check_edit
 from stippler.drawing.log import ENDED, OPENED, STEP, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
@@ -18,6 +19,10 @@ from stippler.files.native.drawing_file import ReadPicture
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
 
 _PICTURE = "picture"
+_WRONG = (
+    StipplerError, KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError,
+    RecursionError,
+)  # fmt: skip
 
 
 class EditLog:
@@ -43,7 +48,7 @@ class EditLog:
             for digest, picture in entry.edit.pictures.items():
                 if digest not in self._known:
                     self._known.add(digest)
-                    self._append(partial(_of_picture, picture))
+                    self._append(partial(of_picture, picture))
         if entry.what in (STEP, OPENED):
             self._first = min(self._first, entry.n_done - 1)
         n_done = max(entry.n_done - self._first, 0)
@@ -61,7 +66,8 @@ def of_entry(entry: Entry) -> bytes:
     return arrays.pack(head, dict(entry.edit.arrays()) if entry.edit is not None else {})
 
 
-def _of_picture(picture: Picture) -> bytes:
+def of_picture(picture: Picture) -> bytes:
+    """Return the record of a picture."""
     head = {"what": _PICTURE, "digest": picture.digest, "name": picture.name, "tone": picture.tone}
     if picture.data is not None:
         return arrays.pack(head, {"data": np.frombuffer(picture.data, np.uint8)})
@@ -90,11 +96,13 @@ def replay(
     n_done, in_run, problem = 0, False, ""
     for record in records:
         try:
-            entry = _entry(record, pictures, read_picture, f"record {n_done}", limits)
+            entry = entry_of(record, pictures, read_picture, f"record {n_done}", limits)
             if entry is not None:
+                if entry.edit is not None:
+                    check_edit(entry.edit, document)
                 document.replay(entry)
                 in_run = entry.what == OPENED or (in_run and entry.what != ENDED)
-        except (StipplerError, KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
+        except _WRONG as error:
             problem = f"record {n_done}: {str(error) or type(error).__name__}"
             break
         n_done += 1
@@ -103,14 +111,20 @@ def replay(
     return n_done, problem
 
 
-def _entry(
+def entry_of(
     record: bytes,
     pictures: dict[str, Picture],
     read_picture: ReadPicture,
     where: str,
     limits: Limits,
 ) -> Entry | None:
-    """Return what a record tells; None for a picture, which is kept in `pictures`."""
+    """Return what a record tells; None for a picture, which is kept in `pictures`.
+
+    Raises
+    ------
+    StipplerError, or what Python has for values of a wrong kind
+        If it makes no sense.
+    """
     head, found = arrays.unpack(record, where, limits)
     what = head.get("what")
     if what == _PICTURE:

@@ -182,11 +182,9 @@ class Journal:
             return self._n_asked - self._n_done
 
     def append(self, payload: Payload) -> None:
-        """Ask for a record; returns at once. After a failure it changes nothing."""
+        """Ask for a record; returns at once. After a failure or the end it changes nothing."""
         with self._lock:
-            if self._closing:
-                raise ValueError("the journal is closed")
-            if self._problem is None:
+            if self._problem is None and not self._closing:
                 self._todo.append(payload)
                 self._n_asked += 1
                 self._lock.notify_all()

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import io
 import math
+import struct
+import zipfile
+import zlib
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +17,7 @@ from stippler.drawing.drawing import Drawing
 MEMBER = "thumbnail.png"
 SIDE_PX = 256
 _FINER = 4  # samples a pixel, each way
+_MOST_BYTES = 1 << 20
 _MOST_DOTS = 100_000  # of more a part is drawn, each with the ink of those left out
 
 
@@ -27,15 +32,18 @@ def thumbnail(drawing: Drawing, side_px: int = SIDE_PX) -> NDArray[np.uint8]:
     scale = side_px / max(page.width_mm, page.height_mm)
     w, h = (max(round(side * scale), 1) for side in (page.width_mm, page.height_mm))
     every = max(len(dots) // _MOST_DOTS, 1)
-    points = dots.position_mm[::every] * scale
+    x, y = (np.ascontiguousarray(column) * scale for column in dots.position_mm[::every].T)
     radii = dots.radius_mm[::every].astype(np.float64) * (scale * math.sqrt(every))
     small = radii * _FINER < 1.0
-    ink = draw_ink(points[~small], radii[~small], (h, w), _FINER)
-    at = np.floor(points[small]).astype(np.int64)
-    inside = ((at >= 0) & (at < (w, h))).all(axis=1)
-    areas = np.pi * radii[small][inside] ** 2
-    shares = np.bincount(at[inside, 1] * w + at[inside, 0], areas, w * h).reshape(h, w)
-    light = 1.0 - np.minimum(ink + shares, 1.0)
+    inside = small & (x >= 0.0) & (x < w) & (y >= 0.0) & (y < h)
+    areas = np.where(inside, np.pi * radii**2, 0.0)
+    cell = np.where(inside, np.floor(y) * w + np.floor(x), 0.0).astype(np.int64)
+    ink = np.asarray(np.bincount(cell, areas, w * h), np.float64).reshape(h, w)
+    if not small.all():
+        large = np.flatnonzero(~small)
+        at = np.stack([x[large], y[large]], axis=1)
+        ink = ink + draw_ink(at, radii[large], (h, w), _FINER)
+    light = 1.0 - np.minimum(ink, 1.0)
     return np.asarray(np.rint(255.0 * light), np.uint8)
 
 
@@ -46,3 +54,30 @@ def thumbnail_png(drawing: Drawing) -> bytes:
     stream = io.BytesIO()
     Image.fromarray(thumbnail(drawing)).save(stream, "png")
     return stream.getvalue()
+
+
+def read_thumbnail(path: Path) -> NDArray[np.uint8] | None:
+    """Return the small picture in a drawing's file, reading nothing else; None if there is none.
+
+    It is but a picture: what is damaged in the file is told when it is opened.
+    """
+    from PIL import Image
+
+    try:
+        with zipfile.ZipFile(path) as archive:
+            entry = archive.getinfo(MEMBER)
+            if entry.file_size > _MOST_BYTES or entry.flag_bits & 1:
+                return None
+            data = archive.read(entry)
+        with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
+            if max(image.size) > 4 * SIDE_PX:
+                return None
+            return np.array(image.convert("L"))
+    except _BROKEN:
+        return None
+
+
+_BROKEN = (
+    OSError, ValueError, LookupError, SyntaxError, RuntimeError, EOFError, OverflowError,
+    zipfile.BadZipFile, zlib.error, NotImplementedError, struct.error,
+)  # fmt: skip

@@ -76,7 +76,7 @@ def _geometries(
         parts = item.get("geometries")
         for part in parts if isinstance(parts, list) else []:
             yield from _geometries(part, name, left_out, depth + 1)
-    elif kind in _LINES or kind in _POLYGONS:
+    elif isinstance(kind, str) and (kind in _LINES or kind in _POLYGONS):
         yield name, item
     else:
         left_out[str(kind)[:40]] += 1

@@ -50,6 +50,8 @@ def decode(stream: BinaryIO, frame: Frame) -> Pixels:
         raise PictureError(
             f"has {frame.channels} channels of {frame.bits} bits", "", "save it as TIFF"
         )
+    if not 2 <= frame.bits <= 16:
+        raise PictureError(f"claims {frame.bits} bits a sample", "", "save it again")
     exif, profile = b"", b""
     for marker, body in _segments(stream):
         if marker == 0xE1 and body.startswith(_EXIF):
@@ -61,6 +63,8 @@ def decode(stream: BinaryIO, frame: Frame) -> Pixels:
     samples = np.asarray(
         imagecodecs.ljpeg_decode(data) if frame.lossless else imagecodecs.jpeg_decode(data)
     )
+    if samples.shape[1::-1] != frame.size:
+        raise PictureError("is damaged: it is not of the size that it tells", "", "save it again")
     return of_array(
         samples,
         _COLOURS[frame.channels],

@@ -93,6 +93,11 @@ def read_csv(path: str | Path) -> Dots:
         raise TableError("is a folder", path, "name a table in it") from None
     except OSError as error:
         raise TableError(f"cannot be read ({error.strerror})", path, "check the file") from None
+    return dots_of_table(data, path)
+
+
+def dots_of_table(data: bytes, path: Path) -> Dots:
+    """Return the dots of a table's bytes; as `read_csv`, which names `path` in errors."""
     text = _decoded(data)
     return _plain_table(text) or _dots(path, *_rows(path, text))
 

@@ -8,7 +8,7 @@ are last.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.line import Line as DrawnLine
+from stippler.drawing.polarity import Polarity, grounds_of, polarity_of
 
 if TYPE_CHECKING:
     from shapely.geometry import MultiPolygon, Polygon
@@ -134,15 +135,17 @@ def sheet_of(drawing: Drawing) -> Sheet:
 def layers_of(drawing: Drawing) -> Iterator[Layer]:
     """Yield a layer for each area that has something to show; the one place that reads areas.
 
-    Hidden areas are left out. Dots of an area that the drawing does not list have a layer of their
-    own. Printed lines come last.
+    Areas of white dots come first, so that black dots stay whole at their borders; those that touch
+    are one layer, and their grounds one shape without a seam. Hidden areas are left out. Dots of an
+    area that the drawing does not list have a layer of their own. Printed lines come last.
     """
-    dots = drawing.dots
+    dots, polarity = drawing.dots, polarity_of(drawing)
+    yield from _inverse_layers(drawing, polarity)
     listed = np.zeros(len(dots), np.bool_)
     for index, area in sorted(drawing.areas.items()):
         rows = np.flatnonzero(dots.area == index)
         listed[rows] = True
-        if len(rows) and not area.hidden:
+        if len(rows) and not area.hidden and index not in polarity.white:
             yield Layer(area.name, _taken(dots, rows))
     if not listed.all():
         yield Layer("no area", _taken(dots, np.flatnonzero(~listed)))
@@ -153,6 +156,27 @@ def layers_of(drawing: Drawing) -> Iterator[Layer]:
     if even or tapered:
         lines = tuple(_line(one) for one in even)
         yield Layer("lines", lines=lines, shapes=tuple(shape_of(one.outline()) for one in tapered))
+
+
+def _inverse_layers(drawing: Drawing, polarity: Polarity) -> Iterator[Layer]:
+    grounds = grounds_of(drawing, polarity)
+    for ids in _touching(grounds):
+        import shapely
+
+        names = ", ".join(drawing.areas[k].name for k in ids)
+        ground = shape_of(shapely.union_all([grounds[k] for k in ids]))
+        rows = np.flatnonzero(np.isin(drawing.dots.area, ids))
+        yield Layer(names, drawing.dots.take(rows), inverse=True, ground=(ground,))
+
+
+def _touching(parts: Mapping[int, Polygon | MultiPolygon]) -> list[list[int]]:
+    """Return the ids of parts in groups of those that touch, in order."""
+    groups: list[list[int]] = []
+    for k, part in parts.items():
+        near = [g for g in groups if any(part.intersects(parts[i]) for i in g)]
+        groups = [g for g in groups if g not in near]
+        groups.append(sorted([k, *(i for g in near for i in g)]))
+    return sorted(groups)
 
 
 def _line(one: DrawnLine) -> Line:

@@ -14,7 +14,7 @@ from stippler.kernels.shapes.dot_shape import MAX_ELONGATION
 
 N_WORDS = 6  # x, y, radius; elongation and angle, roughness, flags and share, seed
 WORD_BYTES = 4
-FIXED, SELECTED = 1, 2
+FIXED, SELECTED, IN_WHITE, UNSEEN = 1, 2, 4, 8
 SEED = 5  # its place among the words
 ROUND_WORDS = (0, 0xFF000000, 0)  # elongation 1, no roughness, no flags, a share of 1
 
@@ -22,6 +22,7 @@ _GRAIN = 16384
 _PER_ELONGATION = 65535.0 / (MAX_ELONGATION - 1.0)
 _PER_TURN = 65536.0
 _WHOLE = np.uint32(0xFF000000)
+_ALL_BLACK = np.empty(0, np.uint8)
 
 
 @inline
@@ -45,11 +46,13 @@ def _pack_shape(row, elongation, angle, roughness, seed, flags):
 @kernel
 def _pack(
     start, stop, rows, position, radius, x0, y0, elongation, angle, roughness, seed, constraint,
-    selected, place, shape,
+    selected, paint, place, shape,
 ):  # fmt: skip
     for k in range(start, stop):
         i = rows[k]
         flags = (FIXED if constraint[i] != 0 else 0) | (SELECTED if selected[i] else 0)
+        if len(paint) > 0 and paint[k] > 0:
+            flags |= IN_WHITE if paint[k] == 1 else UNSEEN
         _pack_place(place[k], position[i, 0] - x0, position[i, 1] - y0, radius[i])
         _pack_shape(shape[k], elongation[i], angle[i], roughness[i], seed[i], flags)
 
@@ -117,6 +120,11 @@ def part_by_roughness(
     return rough[:n_rough], smooth[: len(rows) - n_rough]
 
 
+def flags_of(rows: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """Return the flags of packed dots: `FIXED`, `SELECTED`, `IN_WHITE`, `UNSEEN`."""
+    return (rows[:, 4] >> np.uint32(16)) & np.uint32(0xFF)
+
+
 def set_shares(words: NDArray[np.uint32], shares: NDArray[np.float32]) -> None:
     """Write the shares of dots in the union of all, 0 to 1, to 8 bits."""
     share = (shares * 255.0 + 0.5).astype(np.uint32) << np.uint32(24)
@@ -147,12 +155,16 @@ def pack(
     selected: NDArray[np.bool_],
     rows: NDArray[np.int64],
     out: NDArray[np.uint32],
+    paint: NDArray[np.uint8] = _ALL_BLACK,
 ) -> None:
-    """Pack the given rows of dots into consecutive rows of `out`; `selected` is of all dots."""
+    """Pack the given rows of dots into consecutive rows of `out`; `selected` is of all dots.
+
+    `paint` is of the rows, `stippler.drawing.polarity`'s; empty where all dots are black.
+    """
     parallel_for(
         _pack, len(out), rows, dots.position_mm, dots.radius_mm, *origin_mm, dots.elongation,
-        dots.angle_rad, dots.roughness, dots.seed, dots.constraint, selected, out.view(np.float32),
-        out, grain=_GRAIN,
+        dots.angle_rad, dots.roughness, dots.seed, dots.constraint, selected, paint,
+        out.view(np.float32), out, grain=_GRAIN,
     )  # fmt: skip
 
 

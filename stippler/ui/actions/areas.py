@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
+from stippler.editor.area_files import READ, WRITTEN
 from stippler.editor.commands import CTRL, CTRL_SHIFT, Command, Key
 from stippler.ui.actions.parts import Parts
 
@@ -38,3 +40,51 @@ def area_commands(parts: Parts) -> Iterator[Command]:
         ("down", "Area down in the list", "Down", "", lambda: acts.move_up(-1), (), has_some),
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
+    yield from _work_commands(parts)
+    yield from _file_commands(parts)
+
+
+def _work_commands(parts: Parts) -> Iterator[Command]:
+    acts, session = parts.area_acts, parts.session
+
+    def can_work() -> bool:
+        return bool(acts.choice.ids) and session.paintable
+
+    def can_stipple() -> bool:
+        return can_work() and session.reference is not None
+
+    for name, label, short, tip, run, keys, can in (
+        ("stipple", "Stipple areas", "Stipple",
+         "makes the dots of the chosen areas anew, one area after the other, each in its style; "
+         "all others stay as they are.",
+         acts.process, (Key("enter", CTRL_SHIFT),), can_stipple),
+        ("relax", "Relax areas", "Relax", "evens out the dots of the chosen areas alone.",
+         acts.relax, (Key("r", CTRL_SHIFT),), can_work),
+        ("fill", "Fill areas", "Fill", "adds dots to each chosen area.", acts.fill, (), can_work),
+        ("clear", "Clear areas", "Clear", "removes the dots of the chosen areas, but fixed ones.",
+         acts.clear, (), can_work),
+        ("enlarge", "Enlarge the dots of areas", "Larger", "by 10 percent.",
+         lambda: acts.resize(110.0), (), can_work),
+        ("reduce", "Reduce the dots of areas", "Smaller", "by 10 percent.",
+         lambda: acts.resize(100.0 / 1.1), (), can_work),
+    ):  # fmt: skip
+        yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
+
+
+def _file_commands(parts: Parts) -> Iterator[Command]:
+    acts, dialogs, session = parts.area_acts, parts.popups.dialogs, parts.session
+
+    def ask_import() -> None:
+        dialogs.ask_file("Import areas", "Outlines", Path.cwd(), READ, acts.import_outlines)
+
+    def ask_export() -> None:
+        first = session.exports.file or Path("areas")
+        dialogs.ask_outlines(first.with_suffix(".svg"), WRITTEN, acts.export_outlines)
+
+    for name, short, tip, run, can in (
+        ("import", "Import", "outlines of an SVG or GeoJSON file become areas.",
+         ask_import, lambda: acts.document is not None),
+        ("export", "Export", "outlines of all areas, as SVG paths or GeoJSON.",
+         ask_export, lambda: acts.n_listed > 0),
+    ):  # fmt: skip
+        yield Command(f"area.{name}", f"{short} areas", run, can=can, short=short, tip=tip)

@@ -25,8 +25,8 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     yield Command("file.new", "New page", popups.new_page.ask, (Key("n", CTRL),))
     yield Command("file.open", "Open", filing.ask_picture, (Key("o", CTRL),))
     yield Command("file.open_reference", "Open as reference only", filing.ask_reference,
-                  (Key("o", CTRL_SHIFT),),
                   tip="a picture to draw after by hand; no dots are made of it.")  # fmt: skip
+    yield Command("file.recent_files", "Recent files", popups.recent.ask, (Key("o", CTRL_SHIFT),))
     yield Command("file.forget", "Forget recent pictures", filing.forget_recent,
                   can=lambda: bool(filing.recent()))  # fmt: skip
     yield Command("file.save", "Save", filing.save, (Key("s", CTRL),), can=is_open)
@@ -36,6 +36,7 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     )
     yield Command("file.revert", "Revert to the file", filing.revert,
                   can=lambda: session.exports.file is not None)  # fmt: skip
+    yield Command("file.earlier", "Earlier versions", popups.earlier.ask, can=is_open)
     yield Command("file.recover", "Recover lost drawings", popups.recovery.ask)
     yield Command("file.export_as", "Export", filing.export_as, (Key("e", CTRL),), can=has_dots)
     yield Command("file.export", "Export again", filing.export, (Key("e", CTRL_SHIFT),),

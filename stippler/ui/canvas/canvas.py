@@ -17,6 +17,7 @@ from imgui_bundle import imgui
 from stippler.camera import Camera, Size
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.preview import Preview
+from stippler.drawing.visible import hidden_areas
 from stippler.editor.session import Session
 from stippler.editor.tools.selection import Selection
 from stippler.ui.canvas.lens import MARGIN, Glass
@@ -128,20 +129,27 @@ class Canvas:
         self,
         session: Session,
         selection: Selection,
+        solo: int | None,
         camera: Camera,
         look: Look,
         preview: Preview | None,
     ) -> bool:
-        """Draw the page if it would look different from the last time; return whether it did."""
+        """Draw the page if it would look different from the last time; return whether it did.
+
+        Parameters
+        ----------
+        solo : int or None
+            The area that is shown alone.
+        """
         if self._target is None or self._texture is None:
             return False
-        content = _content(session, selection)
+        content = _content(session, selection, solo)
         frame = _frame(camera, self._texture.size, look, session)
         whole = preview if preview is None or preview.footprint is None else None
         page = (content, replace(frame, preview=whole))
         is_new = page != self._drawn
         if is_new:
-            self._draw_page(session, selection, replace(frame, preview=whole))
+            self._draw_page(session, selection, solo, replace(frame, preview=whole))
             self._drawn = page
             self.n_drawn += 1
         if self._glass is not None and session.drawing is not None:
@@ -180,14 +188,16 @@ class Canvas:
         self._map_drawn_s = now
         self._map.draw(self._renderer(), small, key)
 
-    def _draw_page(self, session: Session, selection: Selection, frame: Frame) -> None:
+    def _draw_page(
+        self, session: Session, selection: Selection, solo: int | None, frame: Frame
+    ) -> None:
         assert self._target is not None
         if session.drawing is None:
             self._target.use()
             self._target.clear(*frame.desk, 1.0)
             return
         renderer = self._renderer()
-        self._upload(renderer.scene, session, selection)
+        self._upload(renderer.scene, session, selection, solo)
         if frame.opacity:
             renderer.scene.set_reference(session.reference)
         renderer.draw(frame, self._target)
@@ -221,14 +231,17 @@ class Canvas:
             self._made = Renderer(self._ctx)
         return self._made
 
-    def _upload(self, scene: Scene, session: Session, selection: Selection) -> None:
+    def _upload(
+        self, scene: Scene, session: Session, selection: Selection, solo: int | None
+    ) -> None:
         """Bring what has changed since the last call to the GPU."""
-        content = _content(session, selection)
+        content = _content(session, selection, solo)
         if content == self._uploaded or session.drawing is None:
             return
         self._uploaded = None  # what fails is tried again
         assert session.document is not None
-        scene.sync(session.document, selection.ids)
+        hidden = hidden_areas(session.document.drawing, solo)
+        scene.sync(session.document, selection.ids, hidden)
         self._uploaded = content
 
     def _sized(self, size_px: Size) -> moderngl.Texture:
@@ -278,7 +291,9 @@ def _frame(camera: Camera, size_px: Size, look: Look, session: Session) -> Frame
     )
 
 
-def _content(session: Session, selection: Selection) -> tuple[int, int, int]:
+def _content(
+    session: Session, selection: Selection, solo: int | None
+) -> tuple[int, int, int, int | None]:
     """Return what tells one state of the dots from another."""
     edited = session.document.revision if session.document is not None else -1
-    return session.revision, edited, selection.revision
+    return session.revision, edited, selection.revision, solo

@@ -11,6 +11,7 @@ from stippler.ui.theme import PANEL_WIDTH, STATUS_HEIGHT, TEXT_PX
 from stippler.ui.widgets import Rect
 
 DRAWING, TOOL, SHAPE, VIEW, HISTORY = "Drawing", "Tool", "Shape", "View", "History"
+AREAS = "Areas"
 _TAB_PADDING = 7.0
 _HOST = (
     imgui.WindowFlags_.no_decoration

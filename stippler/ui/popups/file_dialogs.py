@@ -99,16 +99,25 @@ class Dialogs:
 
     def ask_picture(self, folder: Path, take: Callable[[Path], None]) -> None:
         """Ask for a picture to open."""
+        self.ask_file("Open a picture or a drawing", "Pictures and drawings", folder, OPENED, take)
+
+    def ask_file(
+        self,
+        title: str,
+        what: str,
+        folder: Path,
+        endings: tuple[str, ...],
+        take: Callable[[Path], None],
+    ) -> None:
+        """Ask for a file to read."""
         if self.is_open:
             return
         if self._use_native:
-            patterns = " ".join(f"*{ending}" for ending in OPENED)
-            asked = native.open_file(
-                "Open a picture or a drawing", str(folder), ["Pictures and drawings", patterns]
-            )
+            patterns = " ".join(f"*{ending}" for ending in endings)
+            asked = native.open_file(title, str(folder), [what, patterns])
             self._native = _Native(asked, take)
         else:
-            self._own = _Own("Open a picture or a drawing", "Open", f"{folder}/", OPENED, take)
+            self._own = _Own(title, "Open", f"{folder}/", endings, take)
 
     def ask_place(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
         """Ask where to write a file, by its folder and name; whether to replace is not asked."""
@@ -159,6 +168,12 @@ class Dialogs:
     def ask_save(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
         """Ask where to save the drawing; a file that is there is not replaced unasked."""
         self._ask_output("Save the drawing", "Save", path, endings, take)
+
+    def ask_outlines(
+        self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]
+    ) -> None:
+        """Ask where to write outlines; a file that is there is not replaced unasked."""
+        self._ask_output("Export areas", "Export", path, endings, take)
 
     def dismiss(self) -> None:
         """Close our own dialog without an answer; the system's is the person's to close."""

@@ -13,6 +13,7 @@ from stippler.editor.session import Session
 from stippler.names import shown
 from stippler.resources import assets
 from stippler.ui.popups.file_dialogs import Dialogs
+from stippler.ui.popups.shelf import Item, when
 from stippler.ui.popups.unsaved_guard import Guard
 from stippler.ui.preferences import Preferences
 
@@ -93,6 +94,34 @@ class Filing:
             )
             for path in self._kept.recent
         ]
+
+    def recent_items(self) -> list[Item]:
+        """Return the files of the list for a shelf."""
+        return [
+            Item(path, path.name, shown(str(path)), self._opener(path))
+            for path in self._kept.recent
+        ]
+
+    def earlier_items(self) -> list[Item]:
+        """Return the earlier versions of the open drawing, the newest first."""
+        backups = self._session.saving.earlier()
+        if backups is None or self._session.document is None:
+            return []
+        return [
+            Item(
+                backup.path,
+                when(backup.saved_s),
+                "saved by itself" if backup.is_auto else "as it was before a later save",
+                self._earlier_opener(backup.path),
+            )
+            for backup in backups.listed()
+        ]
+
+    def _earlier_opener(self, path: Path) -> Callable[[], None]:
+        def act() -> None:
+            self._session.open_earlier(path)
+
+        return lambda: self.guard.then("Opening an earlier version", act)
 
     def _opener(self, path: Path) -> Callable[[], None]:
         return lambda: self.open_recent(path)

@@ -20,6 +20,8 @@ from stippler.ui.popups.new_page import NewPage
 from stippler.ui.popups.palette import Palette
 from stippler.ui.popups.preferences_window import PreferencesWindow
 from stippler.ui.popups.recovery import RecoveryWindow
+from stippler.ui.popups.save_failed import SaveFailed
+from stippler.ui.popups.shelf import Shelf
 from stippler.ui.popups.shortcut_sheet import Sheet
 from stippler.ui.preferences import Preferences
 from stippler.ui.widgets import Widgets
@@ -50,6 +52,16 @@ class Popups:
         self.recovery = RecoveryWindow(
             session.keeping.root, session, window.ctx, window.wake, self.filing.guard.then
         )
+        self.recent = Shelf(
+            "Recent files", self.filing.recent_items,
+            lambda: session.messages.say("no file was opened yet"), window.ctx, window.wake,
+        )  # fmt: skip
+        self.earlier = Shelf(
+            "Earlier versions", self.filing.earlier_items,
+            lambda: session.messages.say("there is no earlier version of this drawing yet"),
+            window.ctx, window.wake,
+        )  # fmt: skip
+        self.save_failed = SaveFailed(session, lambda is_copy: self.filing.save_as(is_copy=is_copy))
         self.new_page = NewPage(self.filing.begin)
         self.field_commands: FieldCommands | None = None
         self.palette = Palette(kept, self._more_commands, self._valued_commands)
@@ -67,6 +79,9 @@ class Popups:
             or self.filing.guard.is_open
             or self.new_page.is_open
             or self.recovery.is_open
+            or self.recent.is_open
+            or self.earlier.is_open
+            or self.save_failed.is_open
             or self.palette.is_open
             or self.sheet.is_open
         )
@@ -89,6 +104,9 @@ class Popups:
         guarded("the export", lambda: self.exporting.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
         guarded("what was lost", lambda: self.recovery.draw(widgets))
+        guarded("the recent files", lambda: self.recent.draw(widgets))
+        guarded("the earlier versions", lambda: self.earlier.draw(widgets))
+        guarded("the failed save", lambda: self.save_failed.draw(widgets))
         guarded("the question", lambda: self.filing.guard.draw(widgets))
         guarded("the palette at the pointer", lambda: self.context.draw(widgets, commands))
         guarded("the palette", lambda: self.palette.draw(widgets, commands))
@@ -100,6 +118,11 @@ class Popups:
 
     def _valued_commands(self, typed: str) -> list[Command]:
         return self.field_commands.values(typed) if self.field_commands is not None else []
+
+    def close(self) -> None:
+        """Free every GL object."""
+        for popup in (self.recovery, self.recent, self.earlier, self.exporting):
+            popup.close()
 
     def _keep_keys(self) -> None:
         if self._kept.folder is None or self.commands is None:

@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 
 from stippler.editor.commands import Commands
 from stippler.editor.events import KeyDown
+from stippler.editor.saving import MOST_AUTOSAVE_MIN, MOST_BACKUPS
 from stippler.ui.popups.key_list import KeyList
 from stippler.ui.preferences import Preferences
 from stippler.ui.theme import DARK, LIGHT
@@ -89,6 +90,7 @@ class PreferencesWindow:
             return
         for label, draw in (
             ("Look", self._draw_look),
+            ("Files", self._draw_files),
             ("Panels", self._draw_panels),
             ("Keys", self.keys.draw),
         ):
@@ -143,6 +145,25 @@ class PreferencesWindow:
         )
         if picked != chosen:
             look.scale = _PERCENT[picked - 1] / 100 if picked else 0.0
+
+    def _draw_files(self, widgets: Widgets, commands: Commands) -> None:
+        wishes = self._kept.saving
+        wishes.history = widgets.check(
+            "History in files", wishes.history,
+            "Saves the steps of the history, too: they can be undone after opening.",
+        )  # fmt: skip
+        n = widgets.number(
+            "Earlier versions", wishes.n_backups, "How many of each drawing are kept; 0 for none."
+        )
+        wishes.n_backups = min(max(n, 0), MOST_BACKUPS)
+        n = widgets.number(
+            "Autosave, min", wishes.autosave_min, "Minutes between two of them; 0 for none."
+        )
+        wishes.autosave_min = min(max(n, 0), MOST_AUTOSAVE_MIN)
+        widgets.caption(
+            "An autosave is an earlier version, too: your file is replaced only when you save. "
+            f"{commands['file.earlier'].label} in the File menu opens them."
+        )
 
     def _draw_panels(self, widgets: Widgets, commands: Commands) -> None:
         for command in commands:

@@ -77,6 +77,12 @@ class RecoveryWindow:
         self._wanted = False
         self.is_open = False
 
+    def renew(self, ctx: moderngl.Context) -> None:
+        """Make pictures again in another context; those of the one before are gone with it."""
+        self._ctx = ctx
+        for entry in self._entries:
+            entry.texture = None
+
     def ask(self, *, quietly: bool = False) -> None:
         """Offer what there is; without anything say so, unless that is not to be said."""
         if self._root is None:

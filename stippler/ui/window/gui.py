@@ -80,11 +80,20 @@ class Gui:
         self.dress(look)
         if layout:
             self.place_panels(rescaled(layout, self._scale / (layout_scale or self._scale)))
+        self.join()
+
+    def join(self) -> None:
+        """Draw in the window's context from now on."""
         # Our own callbacks have the input; a backend that knows the pointer's window asks for none.
-        imgui.backends.glfw_init_for_opengl(window.address, False)
-        imgui.backends.glfw_cursor_enter_callback(window.address, 1)
+        imgui.backends.glfw_init_for_opengl(self._window.address, False)
+        imgui.backends.glfw_cursor_enter_callback(self._window.address, 1)
         self.feed(Gone())
         imgui.backends.opengl3_init("#version 330")
+
+    def leave(self) -> None:
+        """Let go of what is in the window's context; panels stay as they are."""
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
 
     def dress(self, look: Look) -> None:
         """Use a theme and a scale; nothing happens if both are in use."""
@@ -190,8 +199,7 @@ class Gui:
 
     def close(self) -> None:
         """Let go of ImGui's GL objects and context."""
-        imgui.backends.opengl3_shutdown()
-        imgui.backends.glfw_shutdown()
+        self.leave()
         imgui.destroy_context(self._context)
 
 

@@ -52,10 +52,20 @@ class Input:
     def __init__(
         self, handle: ctypes._Pointer[glfw._GLFWwindow], ratio: Callable[[], tuple[float, float]]
     ) -> None:
-        self._handle, self._ratio = handle, ratio
+        self._ratio = ratio
         self._events: list[Event] = []
         self._at_px = (0.0, 0.0)
         self._held = NO_MODS
+        self._listen(handle)
+
+    def attach(self, handle: ctypes._Pointer[glfw._GLFWwindow]) -> None:
+        """Take the input of another window from now on; what was held down is let go."""
+        self._listen(handle)
+        self.focus(False)
+        self.focus(True)
+
+    def _listen(self, handle: ctypes._Pointer[glfw._GLFWwindow]) -> None:
+        self._handle = handle
         glfw.set_cursor_pos_callback(handle, lambda _, x, y: self.move(x, y))
         glfw.set_mouse_button_callback(handle, lambda _, *told: self.button(*told))
         glfw.set_scroll_callback(handle, lambda _, dx, dy: self.scroll(dx, dy))

@@ -83,12 +83,8 @@ class Window:
         glfw.set_error_callback(lambda _, text: self._errors.append(_decoded(text)))
         self._start(offscreen)
         try:
-            width, height = (round(side * (self._given_ratio or 1.0)) for side in place.size)
-            self._handle = self._open(title, (width, height), offscreen)
             self._place = self._before = place
-            put(self._handle, place)
-            glfw.make_context_current(self._handle)
-            glfw.swap_interval(0 if offscreen else 1)
+            self._handle = self._placed(place)
             self.ctx = self._context()
         except BaseException:
             glfw.terminate()
@@ -107,6 +103,16 @@ class Window:
                 do=_NO_DISPLAY,
             )
 
+    def _placed(self, place: Place) -> ctypes._Pointer[glfw._GLFWwindow]:
+        """Open a window at its place, its context in use."""
+        offscreen = self._woken is not None
+        width, height = (round(side * (self._given_ratio or 1.0)) for side in place.size)
+        handle = self._open(self._title, (width, height), offscreen)
+        put(handle, place)
+        glfw.make_context_current(handle)
+        glfw.swap_interval(0 if offscreen else 1)
+        return handle
+
     def _open(
         self, title: str, size: tuple[int, int], offscreen: bool
     ) -> ctypes._Pointer[glfw._GLFWwindow]:
@@ -115,6 +121,7 @@ class Window:
         glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, 3)
         glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
         glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+        glfw.window_hint(glfw.CONTEXT_ROBUSTNESS, glfw.LOSE_CONTEXT_ON_RESET)
         glfw.window_hint(glfw.DEPTH_BITS, 0)
         glfw.window_hint(glfw.STENCIL_BITS, 0)
         glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
@@ -131,6 +138,8 @@ class Window:
 
     def _context(self) -> moderngl.Context:
         context: Any = _Current()
+        status = context.load_opengl_function("glGetGraphicsResetStatus")
+        self._reset_status = ctypes.CFUNCTYPE(ctypes.c_uint)(status) if status else None
         try:
             return moderngl.create_context(require=330, context=context)
         except Exception as error:
@@ -138,6 +147,26 @@ class Window:
 
     def _why(self) -> str:
         return self._errors[-1] if self._errors else "no reason given"
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether the driver has let go of the context and all that was in it."""
+        return bool(self._reset_status()) if self._reset_status is not None else False
+
+    def renew(self) -> None:
+        """Make window and context anew, in the same place; what was on the GPU is gone.
+
+        Input goes on; what was held down counts as let go.
+        """
+        is_full, place, before = self.is_full_screen, self.place, self._handle
+        with contextlib.suppress(Exception):  # a lost context may refuse anything
+            self.ctx.release()
+        glfw.destroy_window(before)
+        self._handle = self._placed(place)
+        self.ctx = self._context()
+        self.input.attach(self._handle)
+        if is_full:
+            self.turn_full_screen()
 
     # --- input ------------------------------------------------------------------------------
 

@@ -6,22 +6,26 @@ from pathlib import Path as File
 
 import numpy as np
 import pytest
-from shapely.geometry import box
+from shapely.geometry import Point, Polygon, box
 
 sys.path.insert(0, str(File(__file__).parent))
 import consumers
 
 import stippler
+from stippler import headless
 from stippler.drawing.area import Area
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.line import Line
+from stippler.drawing.partition import Partition
 from stippler.drawing.planar.path import Path
+from stippler.drawing.style import WHITE_ON_BLACK, Style
 from stippler.errors import OutputError, ParameterError
 from stippler.export import check_size, save
 from stippler.files.write.sheet import sheet_of
 
 PAGE = Page(50.8, 25.4)
+OPTIONS = {"png": {"dpi": 300}, "tif": {"dpi": 300, "bits": 8}}
 
 
 def drawing() -> Drawing:
@@ -45,6 +49,45 @@ def test_hidden_areas_are_left_out():
     one = drawing()
     one.areas[4] = Area("wing", one.areas[4].outline_mm, hidden=True)
     assert [layer.name for layer in sheet_of(one).layers] == ["page", "no area"]
+
+
+def test_areas_of_white_dots_come_first_and_those_that_touch_are_one():
+    """So no seam shows between their grounds, and black dots stay whole at their borders."""
+    one = drawing()
+    one.styles[2] = Style(polarity=WHITE_ON_BLACK)
+    outlines = [box(0, 0, 5, 5), box(5, 0, 10, 5), box(30, 0, 40, 10), box(35, 8, 50, 25)]
+    for k, outline in zip((11, 12, 13, 14), outlines, strict=True):
+        one.areas[k] = Area(f"a{k}", outline, 0 if k == 14 else 2)
+    one.dots.area[:] = 12, 13, 4, 14
+    layers = sheet_of(one).layers
+    shown = [(layer.name, len(layer.dots), layer.inverse) for layer in layers]
+    assert shown == [
+        ("a11, a12", 1, True), ("a13", 1, True), ("wing", 1, False), ("a14", 1, False),
+    ]  # fmt: skip
+    (rings,), (cut,) = (shape.rings_mm for layer in layers[:2] for shape in layer.ground)
+    assert Polygon(rings).equals(box(0, 0, 10, 5))
+    assert Polygon(cut).equals(box(30, 0, 40, 10).difference(outlines[3]))
+
+
+@pytest.mark.parametrize("ending", ["svg", "pdf", "eps", "png", "tif"])
+def test_every_picture_of_white_dots_on_black_is_what_the_screen_shows(tmp_path, ending):
+    one = Drawing.blank(PAGE)
+    one.styles[1] = Style(polarity=WHITE_ON_BLACK)
+    one.areas[1] = Area("left", Point(14, 12).buffer(10), 1)
+    one.areas[2] = Area("right", box(20, 4, 40, 20), 1)
+    rng = np.random.default_rng(5)
+    one.dots = Dots.round(rng.uniform((2, 2), (48, 23), (300, 2)), rng.uniform(0.2, 0.5, 300))
+    one.dots.elongation[::2] = rng.uniform(1, 3, 150)
+    one.dots.area[:] = Partition(one.outlines()).area_at(one.dots.position_mm)
+    path = tmp_path / f"a.{ending}"
+    save(one, path, **OPTIONS.get(ending, {}))
+    read = {"svg": consumers.resvg, "pdf": consumers.poppler, "eps": consumers.ghostscript}
+    theirs = read.get(ending, consumers.pillow)(path, 300)
+    screen = 1 - headless.render_image(one, px_per_mm=300 / 25.4, grey=True) / 255
+    h, w = (min(a, b) for a, b in zip(theirs.shape, screen.shape, strict=True))
+    theirs, screen = theirs[:h, :w], screen[:h, :w]
+    assert screen.sum() == pytest.approx(theirs.sum(), rel=0.005)
+    assert np.abs(consumers.averaged(screen - theirs, 16)).max() < 0.02
 
 
 @pytest.mark.parametrize("ending", ["svg", "pdf"])
@@ -166,3 +209,26 @@ def test_json_and_npz_read_back(tmp_path):
 def test_the_api_tells_the_files(tmp_path):
     made = stippler.stipple(np.linspace(0, 1, 400).reshape(20, 20), dots=60, iterations=1, width=20)
     assert made.save(tmp_path / "a.pdf") == [tmp_path / "a.pdf"]
+
+
+def test_layers_by_polarity_are_ink_and_paper(tmp_path):
+    """One file for a plotter's one pen, whatever the areas; dots of a white layer stay white."""
+    from conftest import SHEETS, SIZE, dots
+
+    from stippler.files.write.plate import by_polarity
+    from stippler.files.write.raster import grey_strips
+    from stippler.files.write.sheet import Layer, Sheet
+
+    sheet = Sheet(
+        *SIZE, (*SHEETS["round"], Layer("wing", dots(20, seed=8)), *SHEETS["inverse"][1:])
+    )
+    made = by_polarity(sheet)
+    assert [(layer.name, len(layer.dots)) for layer in made.layers] == [
+        ("ink", 320),
+        ("paper", 150),
+    ]
+    pictures = [np.concatenate(list(grey_strips(one, 200))) for one in (sheet, made)]
+    np.testing.assert_array_equal(*pictures)
+    one = drawing()
+    assert len(save(one, tmp_path / "a.gcode")) == 3
+    assert len(save(one, tmp_path / "b.gcode", layers="polarity")) == 1
