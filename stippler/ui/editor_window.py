@@ -377,7 +377,7 @@ class Editor:
 
     def _draw_tools(self, shape: StripShape) -> None:
         toolbox = self.painting.toolbox
-        draw_tools(self.widgets, toolbox, self.commands, shape, lambda: self.show_panel(TOOL))
+        draw_tools(self.widgets, toolbox, self.commands, shape)
 
     @property
     def _overlay(self) -> Overlay:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from stippler.editor.commands import CTRL, CTRL_SHIFT, SHIFT, Command, Key
 from stippler.editor.events import NO_MODS
 from stippler.ui.actions.parts import Parts
+from stippler.ui.panels.layout import TOOL
 
 _RESIZE_PERCENT = 10.0
 _NUDGE_MM = 0.1
@@ -76,7 +77,13 @@ def tool_commands(parts: Parts) -> Iterator[Command]:
     toolbox = parts.painting.toolbox
 
     def chooser(name: str) -> Callable[[], None]:
-        return lambda: toolbox.choose(name)
+        def choose() -> None:
+            toolbox.choose(name)
+            commands = parts.popups.commands
+            if commands is None or not commands.by_key:  # a letter hides no panel
+                parts.show_panel(TOOL)
+
+        return choose
 
     def used(name: str) -> Callable[[], bool]:
         return lambda: toolbox.name == name

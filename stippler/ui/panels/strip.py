@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from imgui_bundle import imgui
@@ -54,9 +53,8 @@ def draw_tools(
     toolbox: Toolbox,
     commands: Commands,
     shape: StripShape,
-    show: Callable[[], None],
 ) -> None:
-    """Draw an icon for each tool; `show` brings the values of the chosen one to the front."""
+    """Draw an icon for each tool."""
     viewport, scale = imgui.get_main_viewport(), widgets.scale
     imgui.set_next_window_pos(viewport.work_pos)
     imgui.set_next_window_size((shape.width, shape.height))
@@ -76,7 +74,6 @@ def draw_tools(
         is_used = used == tool.name
         if draw_tool(widgets, command, tool.name, tool.tip, used=is_used, side=shape.side):
             command.run()
-            show()
     imgui.end()
     imgui.pop_style_var(4)
 
