@@ -252,7 +252,7 @@ def test_panels_close_open_and_keep_their_place(start: Start) -> None:
     desk.host.click("menu Panels")
     desk.host.click("item Drawing")
     assert desk.host.shown("Start")
-    desk.host.drag((265.0, 36.0), (600.0, 200.0), "left")  # by its tab, the last one now
+    desk.host.drag(desk.host.place("panel Drawing"), (600.0, 200.0), "left")  # by its tab
     place = desk.host.place("Start")
     assert place[0] > 400
     desk = start()

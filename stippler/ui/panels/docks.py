@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from imgui_bundle import imgui
 
 from stippler.ui.fields import Fields
-from stippler.ui.widgets import Widgets
+from stippler.ui.widgets import Rect, Widgets
 
 Guarded = Callable[[str, Callable[[], None]], None]
 _AWAY = 20_000.0
@@ -39,6 +39,7 @@ class Panels:
         self._in_front: set[str] = set()
         self._turns_focus = False
         self._fields = Fields()
+        self._tabs: dict[str, Rect] = {}
         self.are_hidden = False
         self._home = 0  # where the first panel is docked
 
@@ -90,12 +91,13 @@ class Panels:
         survey : bool
             Whether the others are drawn, too, out of sight, so that the palette knows all controls.
         """
-        self._fields = widgets.fields
+        self._fields, self._tabs = widgets.fields, {}
         if survey:
             widgets.fields.forget()
         for name, draw in self._parts.items():
             if self.is_open(name) and not self.are_hidden:
                 guarded(f"the panel {name}", lambda name=name, draw=draw: self._draw(name, draw))  # type: ignore[misc]
+        widgets.marks |= {f"panel {name}": tab for name, tab in self._tabs.items()}
         if survey:
             self._survey(guarded, widgets)
         if self._to_show:
@@ -135,6 +137,8 @@ class Panels:
         cross = True if name in self._in_front else None
         shown, stays = imgui.begin(name, cross, imgui.WindowFlags_.no_collapse)
         self._home = self._home or imgui.get_window_dock_id()
+        tab = imgui.internal.get_current_window().dc.dock_tab_item_rect
+        self._tabs[name] = (tab.min.x, tab.min.y, tab.max.x, tab.max.y)
         if shown:
             self._in_front.add(name)
             self._fields.panel = name
