@@ -21,6 +21,8 @@ class Look:
         Of text and controls, 1 is at 96 dpi; 0 is what the display tells.
     opacity : float
         Of the reference, 0..1; it is not drawn where `reference_shown` is False.
+    patterns_shown : bool
+        Whether outlines of patterns are marked; their tool does that.
     marks_shown : bool
         Whether fixed and selected dots have colours of their own.
     rulers_shown, navigator_shown : bool
@@ -40,6 +42,7 @@ class Look:
     scale: float = 0.0
     dots_shown: bool = True
     marks_shown: bool = True
+    patterns_shown: bool = False
     reference_shown: bool = False
     opacity: float = 0.35
     rulers_shown: bool = False
@@ -55,6 +58,7 @@ class Look:
         """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
         self.dots_shown = self.marks_shown = True
         self.peek = ""
+        self.patterns_shown = False
         self.lens = self.lens if self.lens in LENSES else "none"
         for name in ("reduction", "magnification"):
             kept = getattr(self, name)

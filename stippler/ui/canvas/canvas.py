@@ -286,6 +286,7 @@ def _frame(camera: Camera, size_px: Size, look: Look, session: Session) -> Frame
         ink=theme.ink,
         marks=(FIXED, SELECTED) if look.marks_shown and not peeks else None,
         dots=look.dots_shown and not peeks,
+        patterns=look.patterns_shown,
         opacity=1.0 if peeks else opacity,
         adjustment=session.adjustment if opacity or peeks else NEUTRAL,
     )

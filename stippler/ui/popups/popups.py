@@ -21,6 +21,7 @@ from stippler.ui.popups.palette import Palette
 from stippler.ui.popups.preferences_window import PreferencesWindow
 from stippler.ui.popups.recovery import RecoveryWindow
 from stippler.ui.popups.save_failed import SaveFailed
+from stippler.ui.popups.scale import ScaleDrawing
 from stippler.ui.popups.shelf import Shelf
 from stippler.ui.popups.shortcut_sheet import Sheet
 from stippler.ui.preferences import Preferences
@@ -65,6 +66,7 @@ class Popups:
         self.new_page = NewPage(self.filing.begin)
         self.field_commands: FieldCommands | None = None
         self.palette = Palette(kept, self._more_commands, self._valued_commands)
+        self.scale = ScaleDrawing(session)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
         self.context = ContextPalette(toolbox)
@@ -78,6 +80,7 @@ class Popups:
             or self.exporting.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
+            or self.scale.is_open
             or self.recovery.is_open
             or self.recent.is_open
             or self.earlier.is_open
@@ -103,6 +106,7 @@ class Popups:
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
         guarded("the export", lambda: self.exporting.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
+        guarded("scaling", lambda: self.scale.draw(widgets))
         guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the recent files", lambda: self.recent.draw(widgets))
         guarded("the earlier versions", lambda: self.earlier.draw(widgets))
