@@ -295,11 +295,21 @@ class ExportDialog:
             self._end()
             self._write(chosen, choices.options(), n_bytes)
 
-        if path.exists():
+        there = next((file for file in self._files(path) if file.exists()), None)
+        if there is not None:
             self._is_fresh = True  # where the question may come back to
-            self._dialogs.ask_replace(path, go)
+            self._dialogs.ask_replace(there, lambda _: go(path))
         else:
             go(path)
+
+    def _files(self, path: Path) -> list[Path]:
+        """Return what is written: of several pens a file for each."""
+        from stippler.export import files_of
+
+        form, sheet = self.choices.form, self.look.sheet
+        if form is None or sheet is None:
+            return [path]
+        return files_of(form, sheet, path)
 
     def _end(self) -> None:
         self.is_open = self.preview.playing.runs = False
