@@ -39,7 +39,7 @@ def main() -> int:
             ):  # fmt: skip
                 path = Path(folder) / f"a.{ending}"
                 save(page, path, dpi=DPI)
-                by = 1 if ending == "png" else 8
+                by = 1 if ending == "png" else 4
                 theirs = read(path, DPI, by)
                 h, w = (min(a, b) for a, b in zip(ours.shape, theirs.shape, strict=True))
                 a, b = ours[:h, :w], theirs[:h, :w]
