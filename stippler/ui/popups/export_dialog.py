@@ -101,7 +101,7 @@ class ExportDialog:
         update = self._worker.poll()
         if update is None:
             return False
-        if update.result is not None:
+        if update.result is not None and self._going is not None:
             self.look = update.result
         if update.failure is not None:
             self.problem = str(update.failure)
@@ -312,8 +312,12 @@ class ExportDialog:
         return files_of(form, sheet, path)
 
     def _end(self) -> None:
+        """Close, and let go of what was found: it holds copies of the drawing."""
         self.is_open = self.preview.playing.runs = False
         self.problem = ""
+        if self._going is not None:
+            self._going.superseded = True
+        self._going, self._frozen, self.look = None, None, Look()
 
     # --- faults ---------------------------------------------------------------------------------
 
