@@ -15,9 +15,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 sys.path += [str(ROOT / "files" / "write"), str(ROOT.parent)]
 PRINT_MM, DPI, FINER = 600, 100, 6
-WORST = 0.03
-INK = {"svg": 0.015, "pdf": 0.05, "png": 1e-6}
-"""Consumers draw dots of three pixels and more here: poppler draws such small strokes thinner."""
+WORST = 0.05
+INK = {"svg": 0.025, "pdf": 0.07, "png": 1e-6}
+"""Dots have three pixels here: resvg flattens such curves, and poppler draws strokes thinner."""
 
 
 def main() -> int:
