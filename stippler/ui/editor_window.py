@@ -320,7 +320,7 @@ class Editor:
         imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * self.gui.scale)))
         draw_picture(self.widgets, self.session, self.commands)
         self.widgets.rule()
-        draw_dots(self.widgets, self.session)
+        draw_dots(self.widgets, self.session, self.commands)
         imgui.end_child()
         draw_work(self.widgets, self.session, self.commands)
 
