@@ -96,17 +96,17 @@ def _draw_laid(widgets: Widgets, patterns: Patterns, pattern: Pattern) -> None:
         )
     cage = pattern.deformation.cage
     n = (cage.rows, cage.columns) if cage else (4, 4)
-    down = widgets.number("Cage rows", n[0], "Points of the cage, 4 to 16.")
-    across = widgets.number("Cage columns", n[1], "Points of the cage, 4 to 16.")
+    down = widgets.number("Cage down", n[0], "Points of the cage, 4 to 16.")
+    across = widgets.number("Cage across", n[1], "Points of the cage, 4 to 16.")
     if (down, across) != n:
         patterns.refine(down, across)
 
 
 def _draw_commands(widgets: Widgets, commands: Commands) -> None:
     width = (imgui.get_content_region_avail().x - widgets.gap) / 2
-    names = ("pattern.fill", "pattern.relax", "pattern.straighten", "pattern.remove")
-    for j, name in enumerate(names):
-        command = commands[name]
+    kinds = ("fill", "relax", "straighten", "remove", "between")
+    for j, kind in enumerate(kinds):
+        command = commands[f"pattern.{kind}"]
         if j % 2:
             imgui.same_line(0.0, widgets.gap)
         if widgets.button(command.short, command.explained, width=width, enabled=command.enabled,
