@@ -14,9 +14,11 @@ import numpy as np
 
 from benchmarks.figures import Figure
 from benchmarks.rendering import drawing
+from benchmarks.tours import lkh, or_tools, two_opt
 from stippler.drawing.drawing import Drawing
 from stippler.export import values_for
 from stippler.files.checks import Process, check
+from stippler.files.write.estimate import estimate
 from stippler.files.write.formats import format_named
 from stippler.files.write.plate import LINE_EFFORT, plate_of
 from stippler.stippling.tour import length_of, tour
@@ -36,9 +38,9 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
 def figures(quick: bool = False) -> list[Figure]:
     """Measure all; `quick` leaves out what takes minutes."""
     repeats = 3 if quick else 7
-    results = [*_formats(repeats), *_tours(repeats), _check(repeats)]
+    results = [*_formats(repeats), *_tours(repeats), _check(repeats), *_estimates()]
     if not quick:
-        results += _large()
+        results += [*_beside_others(), *_large()]
     return results
 
 
@@ -106,6 +108,51 @@ def _tours(repeats: int) -> list[Figure]:
         results.append(Figure(what, seconds, "s", reach_s))
         note = "of the constant that shortest tours of random points tend to"
         results.append(Figure(f"{what}, length", longer, "", reach, note=note))
+    return results
+
+
+def _beside_others() -> list[Figure]:
+    """Lengths of ours over theirs, on the same points."""
+    results = []
+    for n, what, theirs, effort, reach in (
+        (100_000, "plot order of 100,000 dots over a 2-opt tour of them", two_opt, 0.0, 1.10),
+        (1_000, "one line through 1,000 dots over LKH's", lkh, LINE_EFFORT, 1.08),
+        (
+            2_000, "one line through 2,000 dots over OR-tools' of 20 s",
+            lambda points: or_tools(points, 20), LINE_EFFORT, 1.08,
+        ),
+    ):  # fmt: skip
+        points = np.random.default_rng(n).random((n, 2))
+        found = theirs(points)
+        if found is None:
+            continue  # not installed
+        ours = length_of(points, tour(points, closed=True, effort=effort), closed=True)
+        ratio = ours / length_of(points, found, closed=True)
+        results.append(Figure(what, ratio, "", reach))
+    return results
+
+
+def _estimates() -> list[Figure]:
+    """Size and time that the dialog foretells, over those of the file."""
+    results = []
+    page = drawing(100_000)
+    cases: tuple[tuple[str, dict[str, object]], ...] = (
+        ("svg", {}),
+        ("pdf", {}),
+        ("tif", {}),
+        ("png", {"dpi": 600}),
+        ("csv", {}),
+    )
+    for name, options in cases:
+        made = format_named(name)
+        values = values_for(made, options)
+        what = page if made.is_data else plate_of(page, values)
+        told = estimate(made, what, values)
+        seconds, size = _written(page, name, options, 3)
+        results.append(Figure(f"estimated size of a {name.upper()}", told.n_bytes / size, "", 1.25))
+        results.append(
+            Figure(f"estimated time of a {name.upper()}", told.seconds / seconds, "", 3.0)
+        )
     return results
 
 

@@ -133,13 +133,14 @@ def render(
 
     with at_hand(file) as at:
         if is_drawing(at):
-            _write_again(at, output, form, exports, asked)
+            _write_again(file, at, output, form, exports, asked)
             return
         _check_page(asked)
         from stippler.export import check_size
         from stippler.progress import stages_shown
 
         check_size(output, _page_of(at, asked.width_mm), form, **exports)
+        _warn_of_memory(file, at, asked)
         with stages_shown() as show:
             from stippler.api import draw
 
@@ -154,19 +155,20 @@ def render(
 
 
 def _write_again(
-    file: Path, output: Path, form: str, exports: dict[str, Any], asked: Asked
+    file: Path, at: Path, output: Path, form: str, exports: dict[str, Any], asked: Asked
 ) -> None:
-    """Write a drawing to a file of another kind."""
+    """Write a drawing, which can be read `at` a place, to a file of another kind."""
     if asked.options:
+        name = "standard input" if str(file) == STDIN else shown(file)
         raise ParameterError(
-            f"is of a picture, and {shown(file)} is a drawing already",
+            f"is of a picture, and {name} is a drawing already",
             min(asked.options.values()),
             "leave it out",
         )
     from stippler.api import open as open_drawing
 
-    drawing = open_drawing(file)
-    drawing.inputs = (file,)
+    drawing = open_drawing(at)
+    drawing.inputs = (at,)
     drawing.save(output, form=form, **exports)
     stops.written = True
 
@@ -192,7 +194,7 @@ def process(
     drawing = open_drawing(file)
     named = {one.name for one in drawing.areas.values()}
     areas = [int(one) if one.isdecimal() and one not in named else one for one in area]
-    made = process_areas(drawing, areas, **asked.keywords)
+    made = process_areas(drawing, areas, style=asked.base, **asked.keywords)
     made.inputs = (file,)
     made.save(output)
     stops.written = True
@@ -317,6 +319,17 @@ def _page_of(picture: Path, width_mm: float) -> Page:
 
     columns, rows = size_of_picture(picture)
     return Page(width_mm, width_mm * rows / columns)
+
+
+def _warn_of_memory(file: Path, picture: Path, asked: Asked) -> None:
+    """Say so before a job that will hardly fit into memory."""
+    from stippler.drawing.style import DEFAULT_DOTS
+    from stippler.files.read.picture import size_of_picture
+    from stippler.jobs.preflight import warning
+
+    columns, rows = size_of_picture(picture)
+    if text := warning("stipple", asked.style.n_dots or DEFAULT_DOTS, columns * rows):
+        _note(file, text)
 
 
 def _note(file: Path, note: str) -> None:

@@ -86,11 +86,11 @@ def _second_process(objects: Path) -> subprocess.Popen[bytes]:
 
 
 def _run_parts(show: Callable[[str, int, int], None]) -> None:
-    parts = list(_parts())
-    for k, (name, run) in enumerate(parts):
-        show(name, k, len(parts))
+    each = list(parts())
+    for k, (name, run) in enumerate(each):
+        show(name, k, len(each))
         run()
-    show("done", len(parts), len(parts))
+    show("done", len(each), len(each))
 
 
 def _run_backwards(objects: Path) -> None:
@@ -98,7 +98,7 @@ def _run_backwards(objects: Path) -> None:
     from stippler.kernels.machine import export
 
     with export.recording(objects):
-        for _, run in reversed(list(_parts())):
+        for _, run in reversed(list(parts())):
             run()
 
 
@@ -106,10 +106,11 @@ def _mark() -> Path:
     return cache_root() / f"complete-{all_digest()}-{processor_key()}"
 
 
-def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
+def parts() -> Iterator[tuple[str, Callable[[], object]]]:
     """Name what compiles, in the order a first drawing needs it, and how to make it compile."""
     import numpy as np
 
+    from stippler import warm_areas
     from stippler.brushes.warm_up import warm_up_brushes
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
@@ -129,6 +130,10 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
         yield f"first dots: {method}", partial(draw, first_dots=method)
     yield "areas", partial(_stipple_an_area, reference)
     yield "brushes", warm_up_brushes
+    yield "areas", warm_areas.use_areas
+    yield "borders of areas", warm_areas.use_borders
+    yield "deformations", warm_areas.use_warp
+    yield "lines", warm_areas.use_lines
     yield "files", lambda: _write(_some_dots(reference))
 
 

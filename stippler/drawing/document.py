@@ -18,7 +18,6 @@ from stippler.drawing.history import BUDGET_BYTES, History, Step
 from stippler.drawing.index import DotIndex
 from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry, Follower
 from stippler.drawing.partition import NOWHERE, Partition
-from stippler.drawing.pens import pen_named
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.reference import Reference
 from stippler.drawing.run import Run
@@ -243,7 +242,8 @@ class Document:
             self.end_run()
             if self.history.undone is not step:
                 return True
-        return self._step(self.history.undo(), UNDONE)
+        n_done = self.history.n_done
+        return self._step(self.history.undo(), UNDONE, n_done)
 
     def redo(self) -> bool:
         """Do the last undone step again; return whether there was one.
@@ -254,7 +254,8 @@ class Document:
             If the step lay on disk and is lost; it and all later ones are gone, and nothing else.
         """
         self._no_stroke()
-        return self._step(self.history.redo(), REDONE)
+        n_done = self.history.n_done
+        return self._step(self.history.redo(), REDONE, n_done)
 
     def steps(self) -> list[Step] | None:
         """Return copies of all steps as they are now, a run's among them, for a file to keep.
@@ -269,9 +270,13 @@ class Document:
                 copy.edit = self._run.edit()
         return copies
 
-    def _step(self, edit: Edit | None, what: str) -> bool:
+    def _step(self, edit: Edit | None, what: str, n_before: int) -> bool:
         if edit is not None:
-            self._apply(edit)
+            try:
+                self._apply(edit)
+            except BaseException:  # for want of memory: it was not done
+                self.history.go_to(n_before)
+                raise
             self._tell(Entry(what, edit))
         return edit is not None
 
@@ -358,7 +363,7 @@ class Document:
         if keeps_fixed:
             gives_way &= ~self.dots.fixed
         replaced = np.flatnonzero(gives_way)
-        self._draft = Draft(self.drawing, self._store, label, area, replaced, pen_named(style.pen))
+        self._draft = Draft(self.drawing, self._store, label, area, replaced, style)
         i = self.drawing.areas[area].style
         for kind, k, value in ((records.STYLE, i, style), (records.REFERENCE, 0, reference)):
             if value is not None and value != self.drawing.get(kind, k):

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.edit import Edit
-from stippler.drawing.pens import Pen
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.store import DotStore, Rows
+from stippler.drawing.style import Style
+from stippler.drawing.style_shape import shaped, turns_with_edges
 
 
 class Draft:
@@ -26,14 +27,21 @@ class Draft:
     ----------
     replaced : rows
         Of the dots that give way.
-    pen : Pen
+    style : Style
         Gives them their shapes.
     """
 
     def __init__(
-        self, drawing: Drawing, store: DotStore, label: str, area: int, replaced: Rows, pen: Pen
+        self,
+        drawing: Drawing,
+        store: DotStore,
+        label: str,
+        area: int,
+        replaced: Rows,
+        style: Style,
     ) -> None:
-        self._store, self._pen, self.area = store, pen, area
+        self._store, self._style, self.area = store, style, area
+        self._drawing = drawing
         self._recorder = Recorder(drawing, store, label)
         self._first_id = store.next_id
         if len(replaced):
@@ -54,7 +62,8 @@ class Draft:
             store.dots.radius_mm[rows] = radius_mm
             return True
         store.cut(self._n_others, self._first_id)
-        dots = self._pen.drawn(Dots.round(position_mm, radius_mm, area=self.area))
+        dots = Dots.round(position_mm, radius_mm, area=self.area)
+        dots = shaped(dots, self._style, self._drawing.reference)
         store.append(replace(dots, id=store.new_ids(n)))
         return False
 
@@ -64,5 +73,16 @@ class Draft:
 
     def finish(self) -> Edit:
         """Return the edit that it amounts to."""
+        if turns_with_edges(self._style):
+            self._turn_again()
         self._recorder.note_inserted(self._store.dots.id[self._n_others :].copy())
         return self._recorder.finish()
+
+    def _turn_again(self) -> None:
+        """Lay dots along the edges of where they have come to lie."""
+        rows = np.arange(self._n_others, len(self._store))
+        dots = self._store.dots.take(rows)
+        plain = Dots.round(dots.position_mm, dots.radius_mm, area=self.area)
+        new = shaped(replace(plain, seed=dots.seed), self._style, self._drawing.reference)
+        for name in ("elongation", "angle_rad"):
+            self._store.write(name, rows, getattr(new, name))

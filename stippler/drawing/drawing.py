@@ -14,10 +14,10 @@ from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.dots import Dots
 from stippler.drawing.foreign import Foreign
 from stippler.drawing.page import MAX_PAGE_MM, Page
-from stippler.drawing.pens import pen_named
 from stippler.drawing.records import Record
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.drawing.style_shape import shaped
 
 __all__ = ["MAX_PAGE_MM", "Drawing", "Page"]
 
@@ -71,8 +71,8 @@ class Drawing:
     ) -> Self:
         """Make a drawing on a page of the reference's size; the style's pen gives dots shapes."""
         drawing = cls.blank(Page(reference.width_mm, reference.height_mm), style)
-        pen = pen_named(drawing.style_of(PAGE_AREA).pen)
-        drawing.dots = pen.drawn(Dots.round(position_mm, radius_mm))
+        made = Dots.round(position_mm, radius_mm)
+        drawing.dots = shaped(made, drawing.style_of(PAGE_AREA), reference)
         drawing.reference = reference
         return drawing
 

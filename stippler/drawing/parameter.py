@@ -109,7 +109,7 @@ class Parameter:
     @property
     def is_dragged(self) -> bool:
         """Whether a number has bounds so near that one drags between them."""
-        return math.isfinite(self.high) and math.isfinite(self.low) and self.high <= 10_000.0
+        return math.isfinite(self.high) and math.isfinite(self.low) and self.high <= 100.0
 
     @property
     def decimals(self) -> int:

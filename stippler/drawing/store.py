@@ -131,9 +131,8 @@ class DotStore:
         if len(edit.removed) or len(edit.inserted) or len(edit.shifted.ids):
             n_after = len(self) - len(edit.removed) + len(edit.inserted)
             most = max(n_after, most)
+            self._grow(n_after)  # first: where memory runs out, nothing has been changed
             self._row_of.drop(edit.removed.dots.id)
-            if n_after > len(self):
-                self._grow(n_after)
             self._move(edit.shifted)
             self._put(edit.inserted, n_after)
             touched.append(edit.removed.rows)
@@ -169,10 +168,11 @@ class DotStore:
         if n <= len(self._room["id"]):
             return
         size = n + n // 4 + _SPARE
+        larger: dict[str, NDArray[Any]] = {}  # all or none: memory may run out
         for name, room in self._room.items():
-            more = np.empty((size, *room.shape[1:]), room.dtype)
-            more[: len(room)] = room
-            self._room[name] = more
+            larger[name] = np.empty((size, *room.shape[1:]), room.dtype)
+            larger[name][: len(room)] = room
+        self._room = larger
 
     def _use(self, n: int) -> None:
         """Look at the first n rows from now on."""

@@ -42,8 +42,20 @@ _SIZES = (
 _SPACINGS = (
     Choice("even", "Even, without rows"),
     Choice("lloyd", "Lloyd's, with rows"),
+    Choice("hexagonal", "Hexagonal grid", "At equal distances; sizes alone carry the tone."),
+    Choice("square", "Square grid", "At equal distances; sizes alone carry the tone."),
+    Choice("along", "Rows along a direction", "Strokes of dots, closer in the dark."),
     Choice("delaunay-mean", "Mean of neighbours"),
     Choice("springs", "Springs"),
+)
+_JITTERS = (
+    Choice("spacing", "Spacing", "As far everywhere, by the mean spacing."),
+    Choice("cell", "Cell", "By each dot's own cell: dots in the dark move less."),
+)
+_DIRECTIONS = (
+    Choice("pen", "Pen's", "As the pen has it."),
+    Choice("set", "Set", "Along the direction given."),
+    Choice("edges", "Edges", "Along the edges of the picture; along the direction on flat ground."),
 )
 WHITE_ON_BLACK = "white-on-black"
 _POLARITIES = (
@@ -73,6 +85,10 @@ class Style:
     size_range_mm: tuple[float, float] | None = parameter(
         Kind.RANGE, None, "Dot radius", "Dot radii in mm; else 1:2, as the number asks for.",
         low=0.0, unit="mm", may_lack=True, keyword="size_range",
+    )  # fmt: skip
+    density_per_cm2: float | None = parameter(
+        Kind.NUMBER, None, "Density", "Dots per square centimetre, instead of a number.",
+        low=0.01, high=1e6, unit="/cm²", may_lack=True, keyword="density",
     )  # fmt: skip
     iterations: int = parameter(
         Kind.WHOLE, 20, "Evening out", "Relaxation steps: each evens out the spacing a little "
@@ -104,11 +120,58 @@ class Style:
     )  # fmt: skip
     spacing: str = parameter(
         Kind.CHOICE, "even", "Spacing", "How dots are spaced: evenly without rows; by Lloyd's "
-        "relaxation alone, which grows rows, like cloth; or by the paper's comparisons.",
-        choices=_SPACINGS,
+        "relaxation alone, which grows rows, like cloth; in a grid or in rows along a direction; "
+        "or by the paper's comparisons.", choices=_SPACINGS,
+    )  # fmt: skip
+    jitter: float = parameter(
+        Kind.NUMBER, 0.0, "Jitter", "Moves each dot by chance, by up to so much of a spacing.",
+        low=0.0, high=100.0, unit="%",
+    )  # fmt: skip
+    jitter_by: str = parameter(
+        Kind.CHOICE, "cell", "Jitter by", "What the jitter is a share of.", choices=_JITTERS,
+        is_more=True,
+    )  # fmt: skip
+    direction_deg: float = parameter(
+        Kind.NUMBER, 0.0, "Direction", "Of rows, long dots and grain, clockwise from the "
+        "horizontal.", low=-90.0, high=90.0, unit="°", keyword="direction",
     )  # fmt: skip
     pen: str = parameter(
         Kind.CHOICE, DEFAULT_PEN, "Pen", "Whose shapes the dots have.", choices=_PENS,
+    )  # fmt: skip
+    elongation: float = parameter(
+        Kind.NUMBER, 1.0, "Long dots", "How much longer than wide dots are; 1 leaves the pen's.",
+        low=1.0, high=4.0,
+    )  # fmt: skip
+    direction_by: str = parameter(
+        Kind.CHOICE, "pen", "Lie along", "What long dots lie along.", choices=_DIRECTIONS,
+    )  # fmt: skip
+    size_noise: float = parameter(
+        Kind.NUMBER, 0.0, "Mottling", "How much larger and smaller dots get from place to place, "
+        "as in stone and wood.", low=0.0, high=100.0, unit="%",
+    )  # fmt: skip
+    size_noise_mm: float = parameter(
+        Kind.NUMBER, 6.0, "Mottles", "How wide such places are.", low=0.1, high=1_000.0,
+        unit="mm", is_more=True, keyword="size_noise_width",
+    )  # fmt: skip
+    size_noise_stretch: float = parameter(
+        Kind.NUMBER, 1.0, "Grain", "How much longer such places are along the direction.",
+        low=1.0, high=50.0, is_more=True,
+    )  # fmt: skip
+    tone_white: float = parameter(
+        Kind.NUMBER, 0.0, "Paper up to", "Tones up to this darkness stay paper.",
+        low=0.0, high=0.95, is_more=True,
+    )  # fmt: skip
+    tone_black: float = parameter(
+        Kind.NUMBER, 1.0, "Deepest from", "Tones from this darkness on get the deepest ink.",
+        low=0.05, high=1.0, is_more=True,
+    )  # fmt: skip
+    tone_gamma: float = parameter(
+        Kind.NUMBER, 1.0, "Middle tones", "Above 1 they get lighter, below 1 darker.",
+        low=0.2, high=5.0, is_more=True,
+    )  # fmt: skip
+    tone_deepest: float = parameter(
+        Kind.NUMBER, 1.0, "Deepest ink", "Share of the paper that ink covers at most.",
+        low=0.05, high=1.0, is_more=True,
     )  # fmt: skip
     polarity: str = parameter(
         Kind.CHOICE, "black-on-white", "Polarity", "Black dots on white paper, or white dots on a "
@@ -120,6 +183,27 @@ class Style:
     def is_inverse(self) -> bool:
         """Whether dots are white on a ground of ink."""
         return self.polarity == WHITE_ON_BLACK
+
+    @property
+    def is_grid(self) -> bool:
+        """Whether dots lie at equal distances, and their sizes alone carry the tone."""
+        return self.spacing in ("hexagonal", "square")
+
+    @property
+    def is_relaxed(self) -> bool:
+        """Whether dots are evened out after they are set."""
+        return self.spacing in RELAXATIONS
+
+    @property
+    def relaxation(self) -> str:
+        """How dots are evened out: as the spacing says, or evenly where that is none."""
+        return self.spacing if self.is_relaxed else "even"
+
+    @property
+    def has_curve(self) -> bool:
+        """Whether the tones of the picture are changed."""
+        tones = (self.tone_white, self.tone_black, self.tone_gamma, self.tone_deepest)
+        return tones != (0.0, 1.0, 1.0, 1.0)
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""
@@ -156,7 +240,11 @@ class Style:
                     f"{word!r} is unknown", "style", f"one of {', '.join(BY_WORD)}"
                 )
         kept = {} if base is None else {name: getattr(base, name) for name in _FIELDS}
-        return cls(**kept | {BY_WORD[word].name: value for word, value in keywords.items()})
+        given = {BY_WORD[word].name: value for word, value in keywords.items()}
+        for one, other in (_COUNTED, _COUNTED[::-1]):
+            if given.get(one) is not None and given.get(other) is None:
+                kept[other] = None  # what is given counts before the base's
+        return cls(**kept | given)
 
     def __post_init__(self) -> None:
         for about in PARAMETERS:
@@ -169,12 +257,24 @@ class Style:
             raise ParameterError(
                 f"{self.first_dots} has no regions", "sizes", "take pulse-density, or sizes by tone"
             )
+        if self.sizes == "regions" and not self.is_relaxed:
+            raise ParameterError(
+                f"{self.spacing} has no regions", "sizes", "take another spacing, or sizes by tone"
+            )
+        if self.n_dots is not None and self.density_per_cm2 is not None:
+            raise ParameterError("stands beside a number of dots", "density", "give one of them")
+        if not self.tone_white < self.tone_black:
+            raise ParameterError(
+                f"{self.tone_white:g} is not below {self.tone_black:g}", "tone white",
+                "give less than tone black",
+            )  # fmt: skip
 
 
 PARAMETERS: tuple[Parameter, ...] = parameters_of(Style)
 BY_WORD = {about.word: about for about in PARAMETERS}
 """The parameters by what Python calls them."""
 
+_COUNTED = ("n_dots", "density_per_cm2")
 _FIELDS = tuple(field.name for field in fields(Style))
 
 
@@ -187,4 +287,7 @@ FIRST_DOTS = parameter_of("first_dots").values
 GROWTHS = parameter_of("growth").values
 STARTS = parameter_of("start").values
 SIZES = parameter_of("sizes").values
+RELAXATIONS = ("even", "lloyd", "delaunay-mean", "springs")
+"""Those spacings that even dots out; the others set them where they stay."""
+
 SPACINGS = parameter_of("spacing").values

@@ -177,6 +177,8 @@ class Making(Job):
         document, made = desk.document, work.progress
         if made is not None and document is not None:
             if self.last is None:
+                if work.note:
+                    desk.messages.say(work.note, WARNING)
                 document.begin_draft("Stipple", self.area, self.style, work.reference)
             document.draft(made.position_mm, made.radius_mm)
             self.last = made

@@ -28,7 +28,7 @@ from stippler.editor.rates import StepRate
 from stippler.editor.saving import Saving
 from stippler.editor.session_state import SessionState, Stipple
 from stippler.errors import ParameterError, StipplerError
-from stippler.jobs import reading, stippling, work
+from stippler.jobs import preflight, reading, stippling, work
 from stippler.jobs.work import Source, Work
 from stippler.stippling.task import SETTLE, Standing, Task
 
@@ -175,6 +175,7 @@ class Session(SessionState):
         frozen = replace(document.drawing, dots=document.begin_run(label))
         style = replace(self.style, weighted=weighted)
         source = self.source
+        self._warn("relax", self.n_dots)
         self.launch(
             lambda: stippling.relax_drawing(frozen, style, iterations, areas),
             lambda k: Relaxing(k, "relax", source, total=iterations),
@@ -308,6 +309,7 @@ class Session(SessionState):
             return
         values = {"dpi": dpi} if options is None else options
         self.exports.start(self.document, path, values, self.inputs, expected_bytes=expected_bytes)
+        self._warn("export", self.n_dots, self._pixels_at(path, values))
 
     def save(self, path: Path, *, is_copy: bool = False) -> None:
         """Write all of the drawing to a file of its own, to go on with later.
@@ -323,6 +325,7 @@ class Session(SessionState):
             self.messages.say("there is no drawing to save yet", WARNING)
         else:
             self.saving.save(self.document, path, is_copy=is_copy)
+            self._warn("save", self.n_dots)
 
     # --- what the workers did ---------------------------------------------------------------
 
@@ -373,6 +376,18 @@ class Session(SessionState):
                 else Making(k, "first dots", source, style)
             ),
         )
+
+    def _warn(self, job: str, n_dots: int, n_pixels: int = 0) -> None:
+        """Say so if a job will hardly fit into memory."""
+        if text := preflight.warning(job, n_dots, n_pixels):
+            self.messages.say(text, WARNING)
+
+    def _pixels_at(self, path: Path, options: Mapping[str, Any]) -> int:
+        """Return how many pixels an export has, if any."""
+        page, dpi = self.drawing.page if self.drawing is not None else None, options.get("dpi")
+        if page is None or not dpi or path.suffix.lower() not in (".png", ".tif", ".tiff"):
+            return 0
+        return int(page.width_mm * page.height_mm * (float(dpi) / 25.4) ** 2)
 
     def launch(self, run: Callable[[], Iterator[Work]], job: Callable[[int], Job]) -> None:
         """Let the worker run something; `job` makes the activity of the request's number."""

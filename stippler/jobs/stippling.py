@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from stippler.drawing.style import DEFAULT_DOTS
+from stippler.jobs import preflight
 from stippler.jobs.preparing import prepared_kernels
 from stippler.jobs.reading import read_source
 from stippler.jobs.work import PREPARE, READ, Source, Work
@@ -32,15 +34,17 @@ def stipple_picture(
         reference = read_source(source)
         yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
     reference = reference.adjusted(source.adjustment)
+    n_dots, n_pixels = style.n_dots or DEFAULT_DOTS, reference.source.darkness.size
+    note = preflight.warning("stipple", n_dots, n_pixels)
     if not is_warm():
         for n_ready, n_kernels in prepared_kernels():
-            yield Work(PREPARE, n_ready, n_kernels, reference)
+            yield Work(PREPARE, n_ready, n_kernels, reference, note=note)
     from stippler.brushes.warm_up import warm_up_brushes
     from stippler.stippling.pipeline import run
     from stippler.stippling.task import Task
 
     for progress in run(Task(style, reference)):
-        yield Work(progress.stage, progress.done, progress.total, reference, progress)
+        yield Work(progress.stage, progress.done, progress.total, reference, progress, note=note)
     warm_up_brushes()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from stippler.stippling.draft import Draft, Floats
+from stippler.stippling.grids import grid, rows_along
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.halftone import sizes_by_region
 from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
@@ -45,7 +47,13 @@ def _placed(draft: Draft) -> Iterator[float]:
 def placed(draft: Draft) -> Iterator[tuple[float, Floats]]:
     """Yield the share done and the dots so far, in pixels from the corner."""
     raster, style = draft.raster, draft.style
-    density = density_of(draft)
+    density, angle = density_of(draft), math.radians(style.direction_deg)
+    if style.is_grid:
+        yield 1.0, grid(density, style.spacing, angle, draft.n_wanted)
+        return
+    if style.spacing == "along":
+        yield 1.0, rows_along(density, angle, draft.n_wanted, style.seed)
+        return
     if style.first_dots == "pulse-density":
         halftone = pulses(density, style.growth, start=style.start, seed=style.seed)
         for share, first in halftone:

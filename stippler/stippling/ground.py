@@ -21,7 +21,9 @@ from stippler.stippling.halftone import DROPPED
 from stippler.stippling.halftone_area import edges_of
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
+from stippler.stippling.style_tone import curves_of, toned
 from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tone import DotRule
 from stippler.stippling.window import Window
 
 Floats = NDArray[np.float64]
@@ -31,6 +33,7 @@ _INSET = 1e-4  # of a pixel; how far within the border a dot lies that was broug
 _LEAST_SIDE = 48  # pixels a side of an area's window, at least: its outline is cut out of them
 _DOTS_PER_PIXEL = 0.1
 _FEWEST = 500
+_GRID_RADII = (0.1, 0.75)  # of the largest, and of the spacing: sizes carry all of the tone there
 
 
 class Ground(Protocol):
@@ -72,8 +75,9 @@ class PageGround:
     origin_mm = (0.0, 0.0)
 
     def __init__(self, reference: Reference, style: Style, *, with_bleed: bool = True) -> None:
-        self.style = with_number(style, reference)
-        self.raster = raster_for(reference, self.style)
+        seen = toned(reference, style)
+        self.style = with_number(counted(style, seen.width_mm * seen.height_mm), seen)
+        self.raster = raster_for(seen, self.style)
         w, h = self.raster.size_mm
         page = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
         self._outline = self.raster.outline_mm() if with_bleed else page
@@ -116,9 +120,10 @@ class AreaGround:
     """
 
     def __init__(self, reference: Reference, style: Style, outline_mm: Outline) -> None:
-        box = outline_mm.bounds
+        box, curves = outline_mm.bounds, curves_of(style)
+        style = counted(style, outline_mm.area)
         n_box = _number_in_box(style, outline_mm)
-        window = Window.of(reference, box, n_box)
+        window = Window.of(reference, box, n_box, *curves)
         self.origin_mm = window.origin_mm
         self._outline = shapely.transform(outline_mm, lambda xy: xy - window.origin_mm)
         k = _division(window.darkness.shape, n_box)
@@ -130,7 +135,7 @@ class AreaGround:
         self.style = with_number(style, local, page_mm2)
         self.raster = raster_for(local, self.style, bleeds=False)
         x0, y0 = self.origin_mm
-        self._field = replace(PictureField.of(reference), origin_mm=(-x0, -y0))
+        self._field = replace(PictureField.of(reference, (curves,)), origin_mm=(-x0, -y0))
         self._parts = Compartments.of(shapely.transform(self._outline, self._to_px))
         self._on_page = outline_mm
         shapely.prepare([self._outline, outline_mm])
@@ -180,13 +185,26 @@ class AreaGround:
 def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> PageRaster:
     """Prepare the raster that a style lays its dots out on."""
     by_region = style.sizes == "regions"
-    return PageRaster.of(
+    raster = PageRaster.of(
         reference,
         style.n_dots,
         style.size_range_mm,
-        bleeds=bleeds and style.weighted and not by_region,
+        bleeds=bleeds and style.weighted and style.is_relaxed and not by_region,
         faintest=DROPPED if by_region else None,
     )
+    if style.is_grid and style.n_dots is not None and style.size_range_mm is None:
+        inked = max(int(np.count_nonzero(raster.darkness)), 1)
+        largest = _GRID_RADII[1] * math.sqrt(inked / style.n_dots)
+        raster = replace(raster, rule=DotRule(_GRID_RADII[0] * largest, largest))
+    return raster
+
+
+def counted(style: Style, mm2: float) -> Style:
+    """Return a style whose density has become a number for so large an area."""
+    if style.density_per_cm2 is None:
+        return style
+    n_dots = min(max(round(style.density_per_cm2 * mm2 / 100.0), 1), MAX_DOTS)
+    return replace(style, n_dots=n_dots, density_per_cm2=None)
 
 
 def _number_in_box(style: Style, outline_mm: Outline) -> int:

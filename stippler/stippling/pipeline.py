@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from stippler.drawing.page import Page
+from stippler.stippling.disorder import jitter, mottle
 from stippler.stippling.draft import Draft
 from stippler.stippling.first_dots import first_dots
 from stippler.stippling.last_stages import onto_ink, part, radii, rim, shortfall_of, trim
@@ -66,13 +67,16 @@ def stages_of(draft: Draft) -> list[Stage]:
     is_new, by_tone = task.kind == STIPPLE, style.sizes == "tone"
     chosen: list[tuple[Stage, bool]] = [
         (first_dots, is_new),
-        (relax, task.n_done < style.iterations),
+        (relax, style.is_relaxed and task.n_done < style.iterations),
         (trim, is_new),
-        (part, by_tone and style.weighted and task.n_done < style.iterations),
+        (part, by_tone and style.is_relaxed and style.weighted
+         and task.n_done < style.iterations),
         (rim, by_tone and style.weighted and style.iterations > 0 and is_new
          and draft.raster.bleed > 0),
+        (jitter, is_new and style.jitter > 0.0),
         (onto_ink, True),
         (radii, by_tone),
+        (mottle, style.size_noise > 0.0),
         (shortfall_of, is_new),
     ]  # fmt: skip
     return [stage for stage, counts in chosen if counts]

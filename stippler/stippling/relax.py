@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stippler.drawing.style import SPACINGS
+from stippler.drawing.style import RELAXATIONS
 from stippler.drawing.validation import floats, whole
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.cells import Cells, Redirect
@@ -110,9 +110,9 @@ class Relaxation:
         wanted: Wanted | Sequence[Wanted] | None = None,
         radius_mm: ArrayLike | None = None,
     ) -> None:
-        if method not in SPACINGS:
+        if method not in RELAXATIONS:
             raise ParameterError(
-                f"{method!r} is not known", "method", f"give one of {', '.join(SPACINGS)}"
+                f"{method!r} is not known", "method", f"give one of {', '.join(RELAXATIONS)}"
             )
         self._method = method
         xy = _checked_points(points)

@@ -71,7 +71,7 @@ class StandingDraft:
     def keeps_tone(self) -> bool:
         """Whether there is a picture whose tone the dots keep while they are spaced evenly."""
         style = self.task.style
-        return self.task.reference is not None and style.spacing == "even" and style.weighted
+        return self.task.reference is not None and style.relaxation == "even" and style.weighted
 
     @property
     def parts(self) -> list[Shape]:
@@ -128,8 +128,8 @@ def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     if style.weighted and reference is not None:
         # dots settle at the root of their weight
         field = PictureField.of(reference, ((np.square,),))
-    evenly = reference is None and style.spacing == "even"
-    method = "lloyd" if style.spacing == "even" and not evenly else style.spacing
+    evenly = reference is None and style.relaxation == "even"
+    method = "lloyd" if style.relaxation == "even" and not evenly else style.relaxation
     if evenly:
         draft.points = draft.without_long_waves(draft.fixed)
     engine = Relaxation(

@@ -14,6 +14,7 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
+from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
 
 _LEAST_MARGIN_MM, _MARGIN = 1.0, 0.05  # around an area, of its side: there its neighbours lie
@@ -34,6 +35,13 @@ def relaxing(
         Whose dots are moved; all, if left out. Dots that lie in another area's part stay.
     """
     dots, partition = drawing.dots, Partition(drawing.outlines())
+    reference = drawing.reference
+    if reference is not None:
+        seen = {k: drawing.style_of(k) for k in drawing.areas}
+        changed = {k: one for k, one in seen.items() if one.has_curve or one.is_inverse}
+        reference = toned_by_area(
+            reference, {k: (partition.part_of(k), one) for k, one in changed.items()}
+        )
     mine = partition.area_at(dots.position_mm) == dots.area
     if areas is not None:
         mine &= np.isin(dots.area, list(areas))
@@ -42,7 +50,7 @@ def relaxing(
     used, part_of_dot = np.unique(some.area, return_inverse=True)
     standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
     parts = tuple(partition.part_of(int(k)) for k in used)
-    return Task(style, drawing.reference, RELAX, parts, standing, steps=steps), rows
+    return Task(style, reference, RELAX, parts, standing, steps=steps), rows
 
 
 @dataclass(frozen=True, slots=True, eq=False)

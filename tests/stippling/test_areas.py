@@ -70,7 +70,9 @@ def inside(document: Document) -> bool:
         {}, *({"first_dots": name} for name in FIRST_DOTS[1:]),
         *({"spacing": name} for name in SPACINGS[1:]), {"sizes": "regions"}, {"weighted": False},
         {"n_dots": None, "size_range_mm": (0.2, 0.4)}, {"iterations": 0}, {"start": "border"},
-        {"pen": "brush"},
+        {"pen": "brush"}, {"n_dots": None, "density_per_cm2": 90.0}, {"jitter": 60.0},
+        {"jitter": 60.0, "jitter_by": "spacing"}, {"elongation": 2.0, "direction_by": "edges"},
+        {"size_noise": 30.0}, {"polarity": "white-on-black"}, {"tone_gamma": 2.0},
     ],
     ids=str,
 )  # fmt: skip

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,8 @@ from stippler.kernels.shapes.number_text import number_rows, number_rows_of_kind
 
 _DECIMALS = 4
 _OUTLINE = 32
+# a polygon inside a circle has less area: its corners are moved out to make up for it
+_OUT = math.sqrt((2 * math.pi / _OUTLINE) / math.sin(2 * math.pi / _OUTLINE))
 _BLOCK = 4096
 _COLORS = 7
 
@@ -75,6 +79,7 @@ def _dots(layer: Layer, name: str, height: float, dots_as: str) -> Iterator[byte
 
 
 def _outlines(dots: Dots, name: str, height: float) -> bytes:
+    dots = replace(dots, radius_mm=(dots.radius_mm * _OUT).astype(np.float32))
     rings = outlines(dots, _OUTLINE).reshape(-1, 2)
     place = np.arange(len(rings)) % _OUTLINE
     which = np.where(place == 0, 0, np.where(place == _OUTLINE - 1, 2, 1)).astype(np.uint8)

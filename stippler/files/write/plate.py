@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.files.write.format import Values
-from stippler.files.write.formats import ALL, CLOSED, NONE
+from stippler.files.write.formats import ALL, CLOSED, NONE, POLARITY
 from stippler.files.write.lettering import text_lines, width_mm, wrapped
 from stippler.files.write.sheet import Layer, Line, Sheet, moved, sheet_of
 from stippler.stippling.tour import tour
@@ -44,6 +44,8 @@ def plate_of(drawing: Drawing, values: Values, cancel: Callable[[], bool] | None
         closed = values["one_line"] == CLOSED
         sheet = one_line(sheet, values["line_width"], closed=closed, cancel=cancel)
     sheet = for_press(sheet, values)
+    if values.get("layers") == POLARITY:
+        sheet = by_polarity(sheet)
     lines = _letter(values["letter"])
     under, used_mm = _under(sheet, values, reduction)
     layers = [*sheet.layers]
@@ -51,6 +53,38 @@ def plate_of(drawing: Drawing, values: Values, cancel: Callable[[], bool] | None
         layers.append(Layer("plate", lines=(*lines, *under)))
     sheet = replace(sheet, height_mm=sheet.height_mm + used_mm, layers=tuple(layers))
     return _marked(sheet, values["marks"]) if values["marks"] != NONE else sheet
+
+
+def by_polarity(sheet: Sheet) -> Sheet:
+    """Return a sheet whose neighbouring layers of one polarity are one, named for it.
+
+    Painting order stays: ink above a white layer is a layer of its own.
+    """
+    groups: list[list[Layer]] = []
+    for layer in sheet.layers:
+        if groups and groups[-1][0].inverse == layer.inverse:
+            groups[-1].append(layer)
+        else:
+            groups.append([layer])
+    return replace(sheet, layers=tuple(map(_joined, groups)))
+
+
+def _joined(layers: list[Layer]) -> Layer:
+    dots = Dots(
+        **{
+            f.name: np.concatenate([getattr(layer.dots, f.name) for layer in layers])
+            for f in fields(Dots)
+        }
+    )
+    first = layers[0]
+    return Layer(
+        "paper" if first.inverse else "ink",
+        dots,
+        first.inverse,
+        tuple(shape for layer in layers for shape in layer.ground),
+        tuple(line for layer in layers for line in layer.lines),
+        tuple(shape for layer in layers for shape in layer.shapes),
+    )
 
 
 def for_press(sheet: Sheet, values: Values) -> Sheet:

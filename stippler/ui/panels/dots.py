@@ -9,11 +9,11 @@ from imgui_bundle import imgui
 from stippler.drawing.style import DEFAULT_DOTS, PARAMETERS, parameter_of
 from stippler.editor.session import Session
 from stippler.ui.panels.fill import draw_fill
-from stippler.ui.panels.parameters import draw_parameters, draw_range
+from stippler.ui.panels.parameters import draw_parameter, draw_parameters, draw_range
 from stippler.ui.widgets import Widgets
 
 _USUAL_RANGE_MM = (0.12, 0.24)
-_APART = ("n_dots", "size_range_mm")  # one may follow from the other
+_APART = ("n_dots", "density_per_cm2", "size_range_mm")  # one may follow from the other
 _OF_BLANKS = ("iterations",)  # what counts on a page without a picture
 
 
@@ -44,6 +44,15 @@ def draw_dots(widgets: Widgets, session: Session) -> None:
 
 def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
     style, about = session.style, parameter_of("n_dots")
+    by_density = widgets.segments(
+        "Count", ("In all", "Per cm²"), int(style.density_per_cm2 is not None),
+        ("A number of dots for the whole area.", "As many as make so many a square centimetre."),
+    )  # fmt: skip
+    if by_density:
+        _draw_density(widgets, session, changes)
+        return
+    if style.density_per_cm2 is not None:
+        changes["density_per_cm2"] = None
     follows = style.n_dots is None and style.size_range_mm is not None
     shown = style.n_dots or session.n_dots or DEFAULT_DOTS
     imgui.begin_disabled(follows)
@@ -52,6 +61,16 @@ def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) ->
     imgui.end_disabled()
     if not follows and typed != shown:
         changes["n_dots"] = typed
+
+
+def _draw_density(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
+    style, about = session.style, parameter_of("density_per_cm2")
+    page = session.drawing.page if session.drawing is not None else None
+    usual = 100.0
+    if page is not None and session.n_dots:
+        usual = float(f"{100.0 * session.n_dots / (page.width_mm * page.height_mm):.3g}")
+    changes["n_dots"] = None
+    changes["density_per_cm2"] = draw_parameter(widgets, about, style.density_per_cm2 or usual)
 
 
 def _draw_sizes(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:
@@ -76,5 +95,5 @@ def _draw_sizes(widgets: Widgets, session: Session, changes: dict[str, Any]) -> 
     free = widgets.check(
         "As many dots as it takes", style.n_dots is None, "The number follows from sizes and tone."
     )
-    if free != (style.n_dots is None):
+    if free != (style.n_dots is None) and style.density_per_cm2 is None:
         changes["n_dots"] = None if free else session.n_dots or DEFAULT_DOTS

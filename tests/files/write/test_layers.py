@@ -209,3 +209,26 @@ def test_json_and_npz_read_back(tmp_path):
 def test_the_api_tells_the_files(tmp_path):
     made = stippler.stipple(np.linspace(0, 1, 400).reshape(20, 20), dots=60, iterations=1, width=20)
     assert made.save(tmp_path / "a.pdf") == [tmp_path / "a.pdf"]
+
+
+def test_layers_by_polarity_are_ink_and_paper(tmp_path):
+    """One file for a plotter's one pen, whatever the areas; dots of a white layer stay white."""
+    from conftest import SHEETS, SIZE, dots
+
+    from stippler.files.write.plate import by_polarity
+    from stippler.files.write.raster import grey_strips
+    from stippler.files.write.sheet import Layer, Sheet
+
+    sheet = Sheet(
+        *SIZE, (*SHEETS["round"], Layer("wing", dots(20, seed=8)), *SHEETS["inverse"][1:])
+    )
+    made = by_polarity(sheet)
+    assert [(layer.name, len(layer.dots)) for layer in made.layers] == [
+        ("ink", 320),
+        ("paper", 150),
+    ]
+    pictures = [np.concatenate(list(grey_strips(one, 200))) for one in (sheet, made)]
+    np.testing.assert_array_equal(*pictures)
+    one = drawing()
+    assert len(save(one, tmp_path / "a.gcode")) == 3
+    assert len(save(one, tmp_path / "b.gcode", layers="polarity")) == 1
