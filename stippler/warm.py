@@ -129,6 +129,7 @@ def parts() -> Iterator[tuple[str, Callable[[], object]]]:
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
     yield "areas", partial(_stipple_an_area, reference)
+    yield "lines and cages", _bend_and_adhere
     yield "brushes", warm_up_brushes
     yield "areas", warm_areas.use_areas
     yield "borders of areas", warm_areas.use_borders
@@ -146,6 +147,24 @@ def _stipple_an_area(reference: Reference) -> None:
 
     part = Polygon([(2, 2), (18, 5), (9, 9), (12, 18)])
     list(run(Task(Style(n_dots=100, iterations=3), reference, parts_mm=(part,))))
+
+
+def _bend_and_adhere() -> None:
+    """Bend by a cage, bring dots onto a line and away from one."""
+    import numpy as np
+
+    from stippler.drawing.deformation import Cage, Deformation
+    from stippler.drawing.line import Line
+    from stippler.drawing.planar.path import Path as LinePath
+    from stippler.stippling.lines import LineIndex, adhere
+
+    box = (0.0, 0.0, 9.0, 9.0)
+    bent = Deformation(cage=Cage.over(box).moved({5: (3.5, 3.5)}))
+    bent.folds(box)
+    index = LineIndex([Line("a", LinePath.polyline([(1, 1), (8, 8)]), meeting="adhere")], 1.0)
+    places = bent.apply(np.random.default_rng(0).random((50, 2)) * 9)
+    adhere(index, places)
+    index.keep_distance(places)
 
 
 def _some_dots(reference: Reference) -> Drawing:
