@@ -81,7 +81,9 @@ class LineIndex:
     def at(self, line: Ints, along: Points) -> Points:
         """Return the places at arc lengths along lines, many lines at once."""
         s = self._first[line] + np.where(self.closed[line], along % self.lengths[line], along)
-        return np.column_stack([np.interp(s, self._s, self._at[:, k]) for k in (0, 1)])
+        k = np.clip(np.searchsorted(self._s, s, side="right") - 1, 0, len(self._s) - 2)
+        t = np.clip((s - self._s[k]) / np.maximum(self._s[k + 1] - self._s[k], 1e-300), 0.0, 1.0)
+        return np.asarray(self._at[k] + t[:, None] * (self._at[k + 1] - self._at[k]))
 
     def whole(self, line: Ints, along: Points) -> Points:
         """Return arc lengths along all lines laid end to end."""
@@ -166,6 +168,7 @@ def adhere(index: LineIndex, points: Points, tone: Tone | None = None) -> Adhere
     share = 0.5 * (share * share * (3.0 - 2.0 * share))[pulled, None]
     out[pulled] += share * (feet[pulled] - out[pulled])
     mine = np.flatnonzero(on)
+    mine = mine[np.argsort(index.whole(line[mine], along[mine]), kind="stable")]
     along[mine] = _spread_many(index, line[mine], along[mine], tone)
     out[mine] = index.at(line[mine], along[mine])
     return Adhered(out, np.where(on, line, -1), np.where(on, along, 0.0))

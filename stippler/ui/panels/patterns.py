@@ -96,8 +96,8 @@ def _draw_laid(widgets: Widgets, patterns: Patterns, pattern: Pattern) -> None:
         )
     cage = pattern.deformation.cage
     n = (cage.rows, cage.columns) if cage else (4, 4)
-    down = widgets.number("Cage rows", n[0], "Points of the cage, 4 to 16.")
-    across = widgets.number("Cage columns", n[1], "Points of the cage, 4 to 16.")
+    down = widgets.number("Cage down", n[0], "Points of the cage, 4 to 16.")
+    across = widgets.number("Cage across", n[1], "Points of the cage, 4 to 16.")
     if (down, across) != n:
         patterns.refine(down, across)
 

@@ -44,8 +44,8 @@ class ScaleDrawing:
         )
         tip = "Of all lengths; 100 keeps the size."
         self.percent = widgets.length("New size", self.percent, tip, "%")
-        tip = "No dot is smaller afterwards; 0 lets sizes shrink."
-        self.least_mm = max(widgets.length("Least radius", self.least_mm, tip), 0.0)
+        tip = "No dot has a smaller radius afterwards; 0 lets sizes shrink."
+        self.least_mm = max(widgets.length("Least dot", self.least_mm, tip), 0.0)
         tip = "How many dots there are afterwards; 0: as many as the least radius lets be."
         self.n_dots = max(widgets.number("Number", self.n_dots, tip), 0)
         drawing = self._session.drawing
