@@ -146,6 +146,42 @@ class Patterns:
         if laid is not None:
             self.change(deformation=replace(laid[1].deformation, cage=None, pins_mm=()))
 
+    def part_between(self) -> None:
+        """Make an area of its own, with a style of its own, of what lies between the polygons."""
+        from stippler.drawing.area_edits import edit_areas
+        from stippler.drawing.planar.borders import paths_of
+        from stippler.drawing.planar.edits import EVEN_ODD, TAKES, add
+        from stippler.drawing.style import Style
+        from stippler.stippling.patterns import cells_of
+
+        laid, document = self.laid, self.document
+        if laid is None or document is None or document.in_stroke:
+            return
+        area = document.drawing.areas[laid[1].area]
+        part = document.partition.part_of(laid[1].area)
+        try:
+            between = cells_of(part, replace(laid[1], between="toned")).between
+            if between is None:
+                self._session.messages.say("nothing lies between the polygons", WARNING)
+                return
+            paths = paths_of(between)
+            others = [k for k in document.drawing.areas if k not in (0, laid[1].area)]
+            outcome = edit_areas(
+                document, "Area between",
+                lambda areas: add(areas, paths, TAKES, locked=others, rule=EVEN_ODD),
+            )  # fmt: skip
+        except StipplerError as error:
+            self._session.messages.say(str(error), WARNING)
+            return
+        own: Style = document.drawing.styles[area.style]
+        document.begin("Style of the area between")
+        for k in outcome.made:
+            made = document.drawing.areas[k]
+            i = document.add("style", replace(own, name=f"{made.name} {k}"))
+            document.set("area", k, replace(made, name=f"between {area.name}", style=i))
+        document.commit()
+        self._session.messages.say("an area of its own; choose it in the panel Areas", INFO)
+
     # --- its dots -----------------------------------------------------------------------------
 
     def fill(self) -> None:

@@ -25,6 +25,9 @@ _APART_MM = 2e-5
 
 _LEAST_MM2 = 1e-4
 
+FEW = 20
+"""Dots to a polygon: fewer are spaced by Lloyd's method; they have no room for rows."""
+
 
 def pattern_of(drawing: Drawing, area: int) -> tuple[int, Pattern] | None:
     """Return the pattern of an area, with its id: the last one laid over it."""

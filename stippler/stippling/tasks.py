@@ -15,7 +15,7 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.part_of_area import part_for_dots
+from stippler.stippling.part_of_area import FEW, part_for_dots
 from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
 
@@ -54,6 +54,8 @@ def relaxing(
     used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
     standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
     parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
+    if cut and reference is None and len(rows) < FEW * len(parts):
+        style = replace(style, spacing="lloyd")
     return Task(style, reference, RELAX, parts, standing, steps=steps), rows
 
 

@@ -68,3 +68,25 @@ def test_a_pattern_is_picked_filled_bent_and_undone(desk, tmp_path):
     assert document.drawing.patterns[k].polygons.name == "mine"
     host.click("Remove")
     assert not document.drawing.patterns
+
+
+def test_what_lies_between_becomes_an_area_of_its_own_style(desk):
+    host, app, editor = desk.host, desk.app, desk.app.editor
+    app.session.show(Drawing.blank(Page(60.0, 45.0)))
+    host.settle()
+    editor.commands["tool.pattern"].run()
+    editor.patterns.size_mm = 30.0
+    host.settle()
+    drawing = app.session.document.drawing
+    editor.patterns.put("hexagons")
+    editor.commands["pattern.between"].run()
+    assert [area.name for area in drawing.areas.values()] == ["page", "between page"]
+    assert len({area.style for area in drawing.areas.values()}) == 2
+    cells = cells_of(app.session.document.partition.part_of(0), drawing.patterns[0]).polygons
+    between = drawing.areas[max(drawing.areas)].outline_mm
+    whole = sum(cell.area for cell in cells) + between.area
+    assert abs(whole - 60 * 45) < 0.01 * 60 * 45
+    for _ in range(3):
+        host.key("z", ctrl=True)
+    assert len(drawing.areas) == 1
+    assert not drawing.patterns

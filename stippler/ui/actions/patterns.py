@@ -29,6 +29,9 @@ def pattern_commands(parts: Parts) -> Iterator[Command]:
         ("relax", "Relax in the pattern", "Relax", "each dot within its polygon.", patterns.relax),
         ("straighten", "Straighten the pattern", "Straighten", "takes cage and pins away.",
          patterns.straighten),
+        ("between", "Area of what lies between", "Part between",
+         "makes an area with a style of its own of what lies between the polygons.",
+         patterns.part_between),
         ("remove", "Remove the pattern", "Remove", "its dots stay.", patterns.remove),
     ):  # fmt: skip
         yield Command(f"pattern.{name}", label, run, can=is_laid, short=short, tip=tip)

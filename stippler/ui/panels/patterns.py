@@ -104,9 +104,9 @@ def _draw_laid(widgets: Widgets, patterns: Patterns, pattern: Pattern) -> None:
 
 def _draw_commands(widgets: Widgets, commands: Commands) -> None:
     width = (imgui.get_content_region_avail().x - widgets.gap) / 2
-    names = ("pattern.fill", "pattern.relax", "pattern.straighten", "pattern.remove")
-    for j, name in enumerate(names):
-        command = commands[name]
+    kinds = ("fill", "relax", "straighten", "remove", "between")
+    for j, kind in enumerate(kinds):
+        command = commands[f"pattern.{kind}"]
         if j % 2:
             imgui.same_line(0.0, widgets.gap)
         if widgets.button(command.short, command.explained, width=width, enabled=command.enabled,
