@@ -19,7 +19,7 @@ _N_DOTS, _STEPS, _WIDTH_MM = 2_000, 20, 200.0
 
 
 def figures(repeats: int) -> list[Figure]:
-    """Time first dots, relaxation and sizes of a page of 16 megapixels, and of a hundredth of it."""
+    """Time what a page of 16 megapixels takes, and an area of a hundredth of it."""
     side = np.linspace(0.2, 0.9, 4000, dtype=np.float32)
     reference = Reference(side[:, None] * side, _WIDTH_MM)
     turn = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
