@@ -162,6 +162,18 @@ class Deformation:
             out = (at @ h[:2, :2].T + h[:2, 2]) / w[:, None]
         return np.asarray(out)
 
+    def followed_by(self, other: Deformation, box: Box, points: int = 9) -> Deformation:
+        """Return a deformation that comes near to this one and then another, over a box in mm.
+
+        Cage and pins become one finer cage, which is met at its points.
+        """
+        size = self.cage.box_mm if self.cage is not None else box
+        n = max((points, self.cage.rows, self.cage.columns) if self.cage else (points, LEAST_CAGE))
+        cage = Cage.over(size, min(n, MOST_CAGE), min(n, MOST_CAGE))
+        rest = cage.rest_mm()
+        moved = other.apply(replace(self, matrix=UNIT_MATRIX).apply(rest)) - rest
+        return Deformation(self.matrix, replace(cage, moves_mm=_pairs(moved)))
+
     def folds(self, box: Box) -> Points:
         """Return places in a box, before the deformation, where it folds over; none is good."""
         from stippler.kernels.warp.deform import find_folds

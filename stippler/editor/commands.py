@@ -138,9 +138,16 @@ class Command:
 
 
 class Commands:
-    """All commands, found by name or by key; a person may give them other keys."""
+    """All commands, found by name or by key; a person may give them other keys.
+
+    Attributes
+    ----------
+    by_key : bool
+        Whether the command that runs was asked for by its key.
+    """
 
     def __init__(self, commands: Iterable[Command]) -> None:
+        self.by_key = False
         self._by_name: dict[str, Command] = {}
         self._by_key: dict[Key, str] = {}
         for command in commands:
@@ -212,5 +219,9 @@ class Commands:
         if command is None:
             return False
         if command.repeats or not event.repeated:
-            command.run()
+            self.by_key = True
+            try:
+                command.run()
+            finally:
+                self.by_key = False
         return True

@@ -120,3 +120,27 @@ def test_stretch_is_how_much_room_grows():
     assert np.allclose(stretch(Deformation((2, 0, 0, 0, 3, 0, 0, 0, 1)), at), 6)
     mirrored = Deformation((-1, 0, 0, 0.5, 1, 0, 0, 0, 1))
     assert np.allclose(stretch(mirrored, at), 1)
+
+
+def test_patterns_of_the_areas_are_bent_too(desk):
+    from stippler.drawing.pattern import Pattern
+    from stippler.stippling.patterns import builtin
+
+    tool, document = WarpTool(), desk.document
+    tool.set("what", "areas")
+    pattern = Pattern.over(1, builtin("bricks"), document.partition.part_of(1).bounds, 15.0)
+    document.begin("Lay")
+    k = document.add("pattern", pattern)
+    document.commit()
+    start = grip(tool, desk, 5)
+    dragged(tool, desk, start, (start[0] + 3, start[1] + 2))
+    from stippler.drawing.deformation import Cage, Deformation
+
+    box = (15.0, 8.0, 45.0, 32.0)
+    warp = Deformation(cage=Cage.over(box).moved({5: (start[0] + 3, start[1] + 2)}))
+    before, now = pattern.rings_mm()[0], document.drawing.patterns[k].rings_mm()[0]
+    assert np.abs(now - before).max() > 2
+    inside = ((before > box[:2]) & (before < box[2:])).all(axis=1)
+    assert np.abs(now[inside] - warp.apply(before[inside])).max() < 0.1
+    document.undo()
+    assert document.drawing.patterns[k] == pattern

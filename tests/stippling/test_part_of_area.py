@@ -136,3 +136,19 @@ def test_bands_about_a_spot_are_rings_with_room_within():
     cells = cells_of(part, pattern)
     assert not cells.notes
     assert max(p.area for p in cells.polygons) < 0.2 * part.area
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [[(5, 5), (35, 25), (35, 5), (5, 25)], [(0, 15), (40, 15)], [(-9, -9), (60, 50)]],
+    ids=["a loop", "through a hole", "beyond the page"],
+)
+def test_odd_lines_cut_an_area_with_a_hole(corners):
+    line = Line("odd", Path.polyline(corners), (0.5, 2.0), meeting="distance", distance_mm=0.4)
+    drawing = drawing_with(None, line)
+    area = shapely.box(0, 0, 40, 30).difference(shapely.Point(20, 15).buffer(5))
+    part = part_for_dots(drawing, 0, area)
+    assert part.is_valid
+    assert part.within(area.buffer(1e-9))
+    assert shapely.distance(part, shapely.linestrings(corners)) >= 0.25 + 0.4 - 1e-9
+    assert part.area > 0.6 * area.area

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -217,6 +217,7 @@ class Warping:
         try:
             if self.target.areas:
                 _bend_borders(document, self.target.areas, self.now)
+                _bend_patterns(document, self.target, self.now)
         except GeometryError as error:
             desk.say(str(error), WARNING)
             self.cancel(desk)
@@ -285,3 +286,11 @@ def _bend_borders(document: Document, areas: tuple[int, ...], bent: Deformation)
             to_mm[k, i] = (float(at[0]), float(at[1]))
     if to_mm:
         edit_areas_within(document, lambda areas_before: move_nodes(areas_before, to_mm))
+
+
+def _bend_patterns(document: Document, target: Target, bent: Deformation) -> None:
+    """Bend the patterns of the areas, too."""
+    patterns = document.drawing.patterns
+    for k, pattern in [(k, p) for k, p in patterns.items() if p.area in target.areas]:  # type: ignore[attr-defined]
+        whole = pattern.deformation.followed_by(bent, target.box)  # type: ignore[attr-defined]
+        document.set("pattern", k, replace(pattern, deformation=whole))  # type: ignore[type-var]
