@@ -158,6 +158,7 @@ class Commands:
                 if key in self._by_key:
                     raise ValueError(f"{key} has two commands")
                 self._by_key[key] = command.name
+        self._groups: list[tuple[str, list[Command]]] = []
         self._first_keys = {name: command.keys for name, command in self._by_name.items()}
 
     def __getitem__(self, name: str) -> Command:
@@ -170,7 +171,12 @@ class Commands:
         return iter(self._by_name.values())
 
     def groups(self) -> list[tuple[str, list[Command]]]:
-        """Return the groups in the menu bar's order, each with its commands."""
+        """Return the groups in the menu bar's order, each with its commands; asked every frame."""
+        if not self._groups:
+            self._groups = self._grouped()
+        return self._groups
+
+    def _grouped(self) -> list[tuple[str, list[Command]]]:
         found: dict[str, list[Command]] = {group: [] for group in GROUPS.values()}
         for command in self:
             found.setdefault(command.group, []).append(command)
@@ -212,6 +218,7 @@ class Commands:
                 del self._by_key[key]
         self._by_name[name] = replace(self._by_name[name], keys=keys)
         self._by_key.update(dict.fromkeys(keys, name))
+        self._groups = []
 
     def take(self, event: KeyDown) -> bool:
         """Run the command of a key; return whether it has one."""
