@@ -79,11 +79,15 @@ class PrintCheck:
 
 def _faults(found: Findings) -> Iterator[tuple[str, NDArray[np.int64]]]:
     """Yield what is wrong, and the rows of the dots concerned."""
+    pairs = {tuple(pair) for pair in found.too_close.tolist()}
+    others = [pair for pair in found.bleeding.tolist() if tuple(pair) not in pairs]
+    bleeding = np.array(others, np.int64).reshape(-1, 2)
     for what, those in (
         ("the dot is too small", found.too_small),
         ("the dot lies beside the page", found.off_page),
         ("the page's edge cuts the dot", found.cut),
         ("the gap between the dots is too narrow", found.too_close),
+        ("the dots grow together as ink spreads", bleeding),
     ):
         for rows in those:
             yield what, np.atleast_1d(rows)

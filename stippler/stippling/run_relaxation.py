@@ -17,6 +17,7 @@ from stippler.stippling.transport import evened_out
 
 _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
+_STEPS_TO_INK = 3  # the last, after the rules
 _BROKEN = 0.35  # of a spacing, by which first dots are moved so that no order is left to them
 
 _READ_LATER = np.empty((0, 2))
@@ -95,10 +96,10 @@ def _evenly(
 def _schedule(n_steps: int, sizes_follow: bool) -> list[Rules]:
     """List the rules of each step: first Lloyd's, then those of even spacing.
 
-    Where sizes can make up for it, the last step brings each dot to the midst of its ink.
+    Where sizes can make up for it, the last steps bring each dot to the midst of its ink.
     """
     n_first = min(_FIRST_STEPS, n_steps // 3)
-    n_last = int(sizes_follow and n_steps > 2)
+    n_last = min(_STEPS_TO_INK, n_steps // 3) if sizes_follow else 0
     middle = [rules_after(k) for k in range(n_steps - n_first - n_last)]
     return [LLOYD] * n_first + middle + [TO_INK] * n_last
 

@@ -39,12 +39,12 @@ class Rules:
     """
 
     near: float = 0.86
-    base: float = 0.05
+    base: float = 0.06
     slope: float = 1.0
-    cap: float = 0.97
-    hole: float = 1.17
+    cap: float = 0.94
+    hole: float = 1.15
     narrow: float = 0.6
-    level: float = 0.3
+    level: float = 0.5
     pull: float = 0.5
     gain: float = 8.0
     low: float = 0.1
@@ -62,8 +62,8 @@ AT_LAST = Rules(near=0.84, cap=0.84, hole=1.22, narrow=0.0)
 
 _TIGHT_STEPS, _LOOSENING_STEPS = 40, 60
 
-TO_INK = Rules(gain=40.0, low=0.1, least=0.5)
-"""The last step: dots go to the midst of their ink, wholly where it is uneven."""
+TO_INK = Rules(gain=150.0, low=0.1, least=0.25)
+"""The last steps: dots go to the midst of their ink, wholly wherever it is uneven at all."""
 
 LLOYD = Rules(least=1.0)
 """Lloyd's step, weighted by the field."""

@@ -56,7 +56,7 @@ def test_dots_spoilt_by_hand_are_evened_out_and_true_again(made):
     rng = np.random.default_rng(3)
     mine = np.flatnonzero(np.hypot(*(position - [30, 70]).T) < 12)
     spoilt = position.copy()
-    spoilt[mine] += rng.normal(0, 0.35, (len(mine), 2))
+    spoilt[mine] += rng.normal(0, 0.4, (len(mine), 2))
     moved, sizes = pressed(reference, spoilt, radius)
     assert tone_error(reference, moved, sizes) <= 1.02 * tone_error(reference, position, radius)
     apart = [KDTree(p).query(p[mine], k=2)[0][:, 1].min() for p in (position, spoilt, moved)]

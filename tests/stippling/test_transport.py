@@ -96,7 +96,7 @@ def relaxed(points, radii, outlines, owner, reference=None, steps=20):
 @pytest.mark.parametrize("darkness", [None, 0.4])
 def test_relaxing_all_evens_out_a_fill_by_chance(darkness):
     points = np.random.default_rng(1).random((6_000, 2)) * 100.0
-    page = np.array([(0, 0), (100, 0), (100, 100), (0, 100)], np.float64)
+    page = box(0, 0, 100, 100)
     reference = None
     if darkness is not None:
         reference = Reference(np.full((300, 300), darkness, np.float32), 100.0)
@@ -107,7 +107,7 @@ def test_relaxing_all_evens_out_a_fill_by_chance(darkness):
 
 
 def test_dots_that_are_even_are_left_to_relaxation():
-    page = np.array([(0, 0), (100, 0), (100, 100), (0, 100)], np.float64)
+    page = box(0, 0, 100, 100)
     points = np.random.default_rng(1).random((3_000, 2)) * 100.0
     owner, held = np.zeros(3_000, np.int32), np.zeros(3_000, np.bool_)
     even, _ = relaxed(points, np.full(3_000, 0.3, np.float32), [page], owner)

@@ -68,3 +68,15 @@ def test_a_repair_is_one_step_and_can_be_undone(parts):
     np.testing.assert_array_equal(document.dots.id, before.id)
     check.show_next()
     assert session.messages.log[-1].text.startswith("1 of 3")
+
+
+def test_pairs_that_grow_together_are_shown_too(parts):
+    from stippler.files.checks import Process
+
+    check, painting, *_ = parts
+    check.process = Process(least_dot_mm=0.0, least_gap_mm=0.0, gain_mm=0.02)
+    chosen = []
+    for _ in range(2):
+        check.show_next()
+        chosen.append(painting.chosen)
+    assert chosen == [[4], [0, 1]]

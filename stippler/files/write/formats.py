@@ -40,11 +40,11 @@ PLATE = (
     ),
     Option("marks", NONE, "Marks to cut and to register by.", choices=(NONE, CROP, ALL)),
     Option("caption", "", "Text under the drawing."),
+    Option("letter", "", "Letter in the upper left corner, such as A."),
     Option(
         "layers", AREAS, "A layer, or a plotter's file, for each area, or for ink and for paper.",
         choices=(AREAS, POLARITY),
     ),
-    Option("letter", "", "Letter in the upper left corner, such as A."),
     Option("press", None, "A calibrated press, pen or paper: dots are solved for it.", kind=str),
     Option("gain", None, "How much every edge grows in print; dots are solved for it.",
            "mm", -1, 1, kind=float),

@@ -37,6 +37,8 @@ def draw_format(widgets: Widgets, choices: Choices) -> None:
     new = widgets.choice("Publisher", [one.text for one in every], at, tip)
     if new != at:
         choices.choose_profile(every[new])
+    if new:
+        widgets.caption(every[new].text)
 
 
 def draw_size(widgets: Widgets, choices: Choices, page_mm: tuple[float, float]) -> None:
