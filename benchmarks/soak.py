@@ -21,6 +21,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from imgui_bundle import imgui  # noqa: F401 - before glfw, so that both share one library
+
+# isort: split
 import glfw
 import numpy as np
 

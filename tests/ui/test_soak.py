@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -35,3 +38,17 @@ def test_random_input_does_no_harm(
     assert soak.hand.n_frames > 100
     assert soak.hand.acts.total() == 950
     assert soak.memory_mb[-1] - soak.memory_mb[0] < module.MOST_MB
+
+
+def test_the_soak_runs_as_a_program(kernels: None, tmp_path: Path) -> None:
+    """As `make soak` does: in a process where nothing else has loaded the window's libraries."""
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks.soak", "0.001"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+        env={**os.environ, "STIPPLER_STATE_DIR": str(tmp_path)},
+    )
+    assert done.returncode == 0, done.stderr[-500:]
+    assert "random input: faults" in done.stdout
