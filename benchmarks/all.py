@@ -20,6 +20,7 @@ TOPICS = (
     "programs",
     "relaxation",
     "areas",
+    "lines",
     "first_dots",
     "quality",
     "grain",

@@ -1,4 +1,4 @@
-"""Figures of areas, deformations, lines and scale."""
+"""Figures of areas."""
 
 from __future__ import annotations
 
@@ -10,17 +10,11 @@ import numpy as np
 import shapely
 
 from benchmarks.figures import Figure
-from stippler.drawing.deformation import Cage, Deformation
-from stippler.drawing.dots import Dots
 from stippler.drawing.line import ADHERE, Line
-from stippler.drawing.pattern import Pattern
 from stippler.drawing.planar import edits, moves
 from stippler.drawing.planar.path import Path
 from stippler.drawing.planar.planar_map import OUTSIDE, Arc, PlanarMap
 from stippler.drawing.planar.swept import dots_in_strip
-from stippler.stippling.lines import adhere, adhering
-from stippler.stippling.patterns import builtin
-from stippler.stippling.scale import Scaling, scaled_dots
 
 SIZE = (200.0, 150.0)
 
@@ -40,23 +34,9 @@ def figures(*, quick: bool = False) -> list[Figure]:
             after.outline(k)
         dots_in_strip(areas, after, dots, owner)
 
-    cage = Cage.over((0.0, 0.0, *SIZE)).moved({5: (60.0, 45.0)})
-    bent = Deformation(cage=cage)
-    pattern = Pattern(1, builtin("hexagons"), 8, 8, bent)
-    lines = adhering(curves(500, rng))
-    loose = rng.random((20_000, 2)) * 100
-    n = 60_000
-    flat = Dots.round(rng.random((n, 2)) * 100, 0.1)
-    page = {0: shapely.box(0, 0, 100, 100)}
     return [
         Figure("one border of 300 areas moved, 200k dots", best_ms(edit, repeats), "ms", 30, 5),
-        Figure("cage over 5,120 polygons", best_ms(pattern.rings_mm, repeats), "ms", 16),
-        Figure("cage over 200k dots", best_ms(lambda: bent.apply(dots), repeats), "ms", 8),
-        Figure("20k dots adhere to 500 curves", best_ms(lambda: adhere(lines, loose), repeats),
-               "ms", 10),
-        Figure("level of detail, 60k to 15k dots",
-               best_ms(lambda: scaled_dots(flat, page, Scaling(n_dots=15_000)), 3) / 1e3, "s", 1),
-    ]  # fmt: skip
+    ]
 
 
 def best_ms(call: Callable[[], object], repeats: int) -> float:

@@ -7,9 +7,12 @@ docs/quality.md.
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter, label
+from scipy.spatial import KDTree
 from shapely.geometry import box
 
 from benchmarks.figures import Figure
@@ -20,6 +23,7 @@ from stippler.analysis.spectrum import measure_spectrum
 from stippler.analysis.tone_error import measure_tone
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.files.read.picture import read_picture
 from stippler.resources import assets
 from stippler.stippling.pipeline import run
 from stippler.stippling.relax import Relaxation
@@ -57,6 +61,8 @@ def figures(quick: bool = False) -> list[Figure]:
                 value = float(np.mean([row[key] for row in found]))
                 label = f"{name} grey, {spacing}: {key}"
                 results.append(Figure(label, value, "", *promised, key in _HIGHER))  # type: ignore[call-arg]
+    results += [_rows_in_windows(name) for name in ("honey-bee.jpg", "ammonite.png")]
+    results += _steps_of_the_wedge()
     results += _after_many_steps()
     results += _relax_all(1 if quick else 10)
     results.append(_step_against_lloyd(3 if quick else 9))
@@ -84,6 +90,60 @@ def _grey(darkness: float, spacing: str, seed: int) -> dict[str, float]:
         "tone_rmse": scored["tone_rmse"],
         "detail_rmse": scored["detail_rmse"],
     }
+
+
+def _drawn(name: str, n: int, tone: str) -> tuple[Reference, NDArray[np.float64]]:
+    """Draw a sample 1,000 mm wide, as even as it gets; return the picture and the dots."""
+    picture = read_picture(assets() / "samples" / name, tone=tone, width_mm=1000.0)
+    *_, last = stages(picture, Style(n_dots=n), snapshots=False)
+    return picture, np.array(last.position_mm)
+
+
+def _rows_in_windows(name: str, side: float = 60.0, most: float = 0.05) -> Figure:
+    """Measure rows where a picture's tone is even: in windows that differ by `most` at most."""
+    picture, points = _drawn(name, 80_000, "perceptual")
+    smooth = gaussian_filter(picture.darkness, 3.0 / picture.pixel_mm)
+    rows, weights = [], []
+    for x in np.arange(0.0, picture.width_mm - side, side / 2):
+        for y in np.arange(0.0, picture.height_mm - side, side / 2):
+            i, j = (int(v / picture.pixel_mm) for v in (y, x))
+            under = smooth[
+                i : i + int(side / picture.pixel_mm), j : j + int(side / picture.pixel_mm)
+            ]
+            inside = points[((points >= (x, y)) & (points < (x + side, y + side))).all(axis=1)]
+            if len(inside) >= 120 and under.std() < most:
+                rows.append(measure_grain(inside).rows_at_4)
+                weights.append(len(inside))
+    note = f"{len(rows)} windows"
+    value = float(np.average(rows, weights=weights))
+    return Figure(f"{Path(name).stem}, where even: rows_at_4", value, "", 0.012, 0.006, note=note)
+
+
+def _steps_of_the_wedge(n: int = 10_000) -> list[Figure]:
+    """Measure how even dots are within each step of the wedge; the worst of them."""
+    picture, points = _drawn("step-wedge.png", n, "perceptual")
+    level = np.rint(255 * picture.darkness).astype(np.intp)
+    least, variation = [], []
+    for value in np.flatnonzero(np.bincount(level[level > 12]) > 0.01 * level.size):
+        bars, n_bars = label(level == value)
+        for bar in range(1, n_bars + 1):
+            area = int(np.count_nonzero(bars == bar))
+            rows, columns = (np.flatnonzero((bars == bar).any(axis=axis)) for axis in (1, 0))
+            low = np.array([columns[0], rows[0]]) * picture.pixel_mm
+            high = np.array([columns[-1] + 1, rows[-1] + 1]) * picture.pixel_mm
+            mine = points[((points >= low) & (points < high)).all(axis=1)]
+            if area < 0.01 * level.size or len(mine) < 60:
+                continue
+            spacing = float(np.sqrt((high - low).prod() / len(mine) * 2.0 / np.sqrt(3.0)))
+            inner = ((mine - low > spacing) & (high - mine > spacing)).all(axis=1)
+            near = np.asarray(KDTree(mine).query(mine[inner], k=2)[0])[:, 1] / spacing
+            least.append(near.min())
+            variation.append(near.std() / near.mean())
+    note = f"the worst of {len(least)} steps"
+    return [
+        Figure("wedge, within a step: min_rel", min(least), "", 0.40, 0.55, True, note),
+        Figure("wedge, within a step: rel_nn_cv", max(variation), "", 0.13, 0.11, note=note),
+    ]
 
 
 def _after_many_steps(n: int = 10_000, steps: int = 320) -> list[Figure]:

@@ -91,6 +91,7 @@ def _square(repeats: int) -> list[Figure]:
             "50k, square, settled", later_step_s(engine, SETTLED - 23, 9) * 1e3, "ms", 5, 2.5
         ),
     ]  # fmt: skip
+    out.append(_even_against(engine, Relaxation(xy, square, method="even"), repeats))
     peers = {"scipy Delaunay + numpy": lambda: scipy_step(xy), "shapely": lambda: shapely_step(xy)}
     promised = {"scipy Delaunay + numpy": 20.0}
     for name, step in peers.items():
@@ -107,6 +108,15 @@ def _square(repeats: int) -> list[Figure]:
         note = "for comparison"
         out.append(Figure(f"50k, square, {method}, a step", seconds * 1e3, "ms", note=note))
     return out
+
+
+def _even_against(lloyd: Relaxation, even: Relaxation, repeats: int) -> Figure:
+    """Compare settled steps, in turns."""
+    even.run(SETTLED)
+    engines = (even, lloyd)
+    turns = [[least_s(one.step, 1, warm=0) for one in engines] for _ in range(repeats)]
+    ratio = float(np.divide(*np.min(turns, axis=0)))
+    return Figure("50k, a settled step of the even rules", ratio, "x Lloyd", 1.3)
 
 
 def _times_faster(name: str, theirs: float, ours: float, reach: float | None) -> Figure:

@@ -17,6 +17,7 @@ from stippler.drawing.deformation import Cage
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.pattern import Pattern
+from stippler.drawing.style import Style
 from stippler.headless import render_image
 from stippler.stippling.initial_points import random_in
 from stippler.stippling.patterns import builtin, builtin_names, cells_of
@@ -60,11 +61,43 @@ def plate(name: str) -> Image.Image:
     return Image.fromarray(np.hstack([panels[0], gap, panels[1], gap, panels[2]]))
 
 
+def following_plate(way: str) -> Image.Image:
+    """Return bands that follow the ammonite: plain, deformed, and filled by its tone."""
+    from stippler.files.read.picture import read_picture
+    from stippler.stippling.patterns_of_picture import following
+    from stippler.stippling.pipeline import run
+    from stippler.stippling.tasks import stippling
+
+    sample = Path(__file__).parents[1] / "assets" / "samples" / "ammonite.png"
+    reference = read_picture(sample, tone="illustration", width_mm=SIDE)
+    drawing = Drawing.blank(Page(SIDE, reference.height_mm), Style(n_dots=9000))
+    drawing.reference = reference
+    area = drawing.outlines()[0]
+    plain = following(0, area, reference, 2.0, way)
+    box = (0.0, 0.0, SIDE, reference.height_mm)
+    cage = Cage.over(box)
+    places = cage.places_mm()
+    moved = {5: tuple(places[5] + (-4.0, -3.0)), 10: tuple(places[10] + (4.0, 3.0))}
+    bent = replace(plain, deformation=replace(plain.deformation, cage=cage.moved(moved)))
+    drawing.patterns = {0: bent}
+    *_, made = run(stippling(drawing, 0).task, snapshots=False)
+    drawing.dots = Dots.round(made.position_mm, made.radius_mm)
+    panels = [outlines(list(cells_of(area, one).polygons)) for one in (plain, bent)]
+    panels.append(render_image(drawing, px_per_mm=SCALE, grey=True))
+    height = panels[2].shape[0]
+    gap = np.full((height, 12), 255, np.uint8)
+    return Image.fromarray(np.hstack([panels[0][:height], gap, panels[1][:height], gap, panels[2]]))
+
+
+FOLLOWING = {"bands-along-the-tone": "along", "bands-across-edges": "across"}
+
+
 def main() -> None:
     """Write a plate for each set named, or for all."""
     OUT.mkdir(exist_ok=True)
-    for name in sys.argv[1:] or builtin_names():
-        image = plate(name).quantize(16, dither=Image.Dither.NONE)
+    for name in sys.argv[1:] or [*builtin_names(), *FOLLOWING]:
+        made = following_plate(FOLLOWING[name]) if name in FOLLOWING else plate(name)
+        image = made.quantize(16, dither=Image.Dither.NONE)
         image.save(OUT / f"{name}.png", optimize=True)
 
 

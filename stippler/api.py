@@ -15,6 +15,7 @@ from stippler.drawing.drawing import Drawing as _Drawing
 from stippler.drawing.records import STYLE
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.drawing.style_presets import preset
 from stippler.errors import ParameterError
 from stippler.keywords import with_keywords
 from stippler.stippling.stipple import Progress, notes_on, stages
@@ -78,7 +79,7 @@ def stipple(
     width: float = DEFAULT_WIDTH_MM,
     *,
     tone: Tone = "illustration",
-    style: Style | None = None,
+    style: Style | str | None = None,
     **keywords: Any,
 ) -> Drawing:
     """Turn a picture into a stipple drawing.
@@ -95,8 +96,9 @@ def stipple(
     tone : {"illustration", "linear", "perceptual"}
         As an illustrator would draw it, from the picture's own histogram, with deep parts just
         open; or true at arm's length: ink replaces the picture's light; or its encoded values.
-    style : Style, optional
-        How it is drawn; what is given beside it counts before it.
+    style : Style or str, optional
+        How it is drawn, or the name of a style that comes with the program, such as "wood" (see
+        ``docs/styles.md``); what is given beside it counts before it.
     {keywords}
 
     Returns
@@ -117,7 +119,7 @@ def stipple(
     """
     if dots is not None:
         keywords["dots"] = dots
-    return draw(image, Style.of(style, **keywords), tone=tone, width_mm=width)
+    return draw(image, Style.of(_style(style), **keywords), tone=tone, width_mm=width)
 
 
 def draw(
@@ -148,7 +150,7 @@ def process(
     drawing: _Drawing,
     area: int | str | Sequence[int | str],
     *,
-    style: Style | None = None,
+    style: Style | str | None = None,
     **keywords: Any,
 ) -> Drawing:
     """Stipple areas of a drawing anew; all others stay untouched.
@@ -159,7 +161,7 @@ def process(
         With a picture; not modified.
     area : int, str or a sequence of them
         Ids or names of areas. They are made one after the other; their fixed dots stay.
-    style : Style, optional
+    style : Style or str, optional
         For these areas from now on; left out, each keeps its own. What is given beside it counts
         before it. Areas of one style share its number of dots, by their ink.
     {keywords}
@@ -197,6 +199,10 @@ def process(
     return out
 
 
+def _style(style: Style | str | None) -> Style | None:
+    return preset(style) if isinstance(style, str) else style
+
+
 def _area_id(drawing: _Drawing, area: int | str) -> int:
     if isinstance(area, int):
         found = [area] if area in drawing.areas else []
@@ -211,10 +217,10 @@ def _area_id(drawing: _Drawing, area: int | str) -> int:
 
 
 def _restyle(
-    drawing: _Drawing, ids: list[int], style: Style | None, keywords: dict[str, Any]
+    drawing: _Drawing, ids: list[int], style: Style | str | None, keywords: dict[str, Any]
 ) -> None:
     """Give areas a style of their own."""
-    made = {k: Style.of(style or drawing.style_of(k), **keywords) for k in ids}
+    made = {k: Style.of(_style(style) or drawing.style_of(k), **keywords) for k in ids}
     for k, one in made.items():
         i = drawing.first_free(STYLE)
         drawing.styles[i] = one

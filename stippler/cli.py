@@ -194,7 +194,7 @@ def process(
     drawing = open_drawing(file)
     named = {one.name for one in drawing.areas.values()}
     areas = [int(one) if one.isdecimal() and one not in named else one for one in area]
-    made = process_areas(drawing, areas, **asked.keywords)
+    made = process_areas(drawing, areas, style=asked.base, **asked.keywords)
     made.inputs = (file,)
     made.save(output)
     stops.written = True

@@ -12,11 +12,16 @@ import typer
 from stippler.drawing.parameter import Kind, Parameter
 from stippler.drawing.picture_values import TONE, WIDTH
 from stippler.drawing.style import PARAMETERS, Style
+from stippler.drawing.style_presets import preset, preset_keys
 from stippler.errors import ParameterError
 from stippler.files.write.formats import FORMATS, every_option
 
 PANEL = "What is written"
 
+_STYLE = typer.Option(
+    metavar="NAME", help=f"A style to begin with: {', '.join(preset_keys())}. Other options count "
+    "before it.", show_default=False,
+)  # fmt: skip
 _TYPES: dict[Kind, type] = {
     Kind.WHOLE: int,
     Kind.NUMBER: float,
@@ -34,6 +39,8 @@ class Asked:
     ----------
     options : dict of name to option
         Those that stand there, by the names of the values they set.
+    base : Style or None
+        The one that is named.
     keywords : dict
         The style's values that stand there, as Python takes them.
     """
@@ -42,6 +49,7 @@ class Asked:
     tone: str
     width_mm: float
     options: dict[str, str]
+    base: Style | None
     keywords: dict[str, Any]
 
 
@@ -62,14 +70,19 @@ def _with_options(
 
     def gather(values: dict[str, Any], context: typer.Context) -> Asked:
         given = {name: pair for name, pair in added.items() if _is_given(context, name)}
-        found = {one.word: _value_of(one, values[_python_name(one)]) for one in PARAMETERS}
-        words = {one.word: one.name for one in PARAMETERS}
-        options = dict(given.values())
-        keywords = {word: found[word] for word in found if words[word] in options}
+        keywords = {
+            one.word: _value_of(one, values[_python_name(one)])
+            for one in PARAMETERS
+            if _python_name(one) in given
+        }
+        base = preset(values["style"]) if values["style"] else None
+        options = dict.fromkeys((one.name for one in PARAMETERS), "--style") if base else {}
         page = values.get("tone", TONE.default), values.get("width", WIDTH.default)
-        return Asked(Style.of(**found), *page, options, keywords)
+        options |= dict(given.values())
+        return Asked(Style.of(base, **keywords), *page, options, base, keywords)
 
-    return _with(function, "asked", [*map(_option, parameters)], gather)
+    named = _keyword("style", str, _STYLE, "")
+    return _with(function, "asked", [named, *map(_option, parameters)], gather)
 
 
 def with_export_options(function: Callable[..., None]) -> Callable[..., None]:

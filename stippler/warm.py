@@ -86,11 +86,11 @@ def _second_process(objects: Path) -> subprocess.Popen[bytes]:
 
 
 def _run_parts(show: Callable[[str, int, int], None]) -> None:
-    parts = list(_parts())
-    for k, (name, run) in enumerate(parts):
-        show(name, k, len(parts))
+    each = list(parts())
+    for k, (name, run) in enumerate(each):
+        show(name, k, len(each))
         run()
-    show("done", len(parts), len(parts))
+    show("done", len(each), len(each))
 
 
 def _run_backwards(objects: Path) -> None:
@@ -98,7 +98,7 @@ def _run_backwards(objects: Path) -> None:
     from stippler.kernels.machine import export
 
     with export.recording(objects):
-        for _, run in reversed(list(_parts())):
+        for _, run in reversed(list(parts())):
             run()
 
 
@@ -106,10 +106,11 @@ def _mark() -> Path:
     return cache_root() / f"complete-{all_digest()}-{processor_key()}"
 
 
-def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
+def parts() -> Iterator[tuple[str, Callable[[], object]]]:
     """Name what compiles, in the order a first drawing needs it, and how to make it compile."""
     import numpy as np
 
+    from stippler import warm_areas
     from stippler.brushes.warm_up import warm_up_brushes
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
@@ -128,7 +129,12 @@ def _parts() -> Iterator[tuple[str, Callable[[], object]]]:
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
     yield "areas", partial(_stipple_an_area, reference)
+    yield "lines and cages", _bend_and_adhere
     yield "brushes", warm_up_brushes
+    yield "areas", warm_areas.use_areas
+    yield "borders of areas", warm_areas.use_borders
+    yield "deformations", warm_areas.use_warp
+    yield "lines", warm_areas.use_lines
     yield "files", lambda: _write(_some_dots(reference))
 
 
@@ -141,6 +147,24 @@ def _stipple_an_area(reference: Reference) -> None:
 
     part = Polygon([(2, 2), (18, 5), (9, 9), (12, 18)])
     list(run(Task(Style(n_dots=100, iterations=3), reference, parts_mm=(part,))))
+
+
+def _bend_and_adhere() -> None:
+    """Bend by a cage, bring dots onto a line and away from one."""
+    import numpy as np
+
+    from stippler.drawing.deformation import Cage, Deformation
+    from stippler.drawing.line import Line
+    from stippler.drawing.planar.path import Path as LinePath
+    from stippler.stippling.lines import LineIndex, adhere
+
+    box = (0.0, 0.0, 9.0, 9.0)
+    bent = Deformation(cage=Cage.over(box).moved({5: (3.5, 3.5)}))
+    bent.folds(box)
+    index = LineIndex([Line("a", LinePath.polyline([(1, 1), (8, 8)]), meeting="adhere")], 1.0)
+    places = bent.apply(np.random.default_rng(0).random((50, 2)) * 9)
+    adhere(index, places)
+    index.keep_distance(places)
 
 
 def _some_dots(reference: Reference) -> Drawing:

@@ -63,3 +63,64 @@ def test_without_the_mark_it_is_cold(monkeypatch, tmp_path):
     assert not warm.is_warm()
     assert list(Path(tmp_path).iterdir()) == []
     store.stores.cache_clear()
+
+
+AREAS = """
+import json, sys
+import numpy as np, shapely
+from stippler.drawing.deformation import Cage, Deformation
+from stippler.drawing.line import Line
+from stippler.drawing.planar import edits
+from stippler.drawing.planar.path import Path
+from stippler.drawing.planar.planar_map import PlanarMap
+from stippler.drawing.reference import Reference
+from stippler.stippling.lines import adhere, adhering, keeping_distance
+from stippler.stippling.picture_field import PictureField
+from stippler.stippling.relax import Relaxation
+from stippler.stippling.radii import solve_radii
+from stippler.stippling.tone import DotRule
+
+late, rng = [], np.random.default_rng(7)
+
+def look(what):
+    if "numba" in sys.modules and not late:
+        late.append(what)
+
+areas = PlanarMap.of_page(30.0, 20.0)
+for x in (1, 6):
+    square = [(x, 2), (x + 9, 2), (x + 9, 11), (x, 11)]
+    areas = edits.add(areas, Path.polyline(square, closed=True), edits.IS_CUT).map
+areas.area_at(rng.random((10, 2)) * 20)
+look("borders")
+bent = Deformation(cage=Cage.over((0.0, 0.0, 9.0, 9.0)).moved({3: (4.0, 4.0)}))
+bent.apply(rng.random((10, 2)))
+look("cage")
+line = Line("line", Path.polyline([(1.0, 1.0), (5.0, 9.0)]))
+keeping_distance([line]).keep_distance(rng.random((9, 2)) * 9)
+adhere(adhering([line]), rng.random((9, 2)) * 9)
+look("lines")
+reference = Reference(rng.random((60, 90)).astype(np.float32), 30.0)
+shapes = [areas.outline(k) for k in areas.areas[1:]]
+dots = [shapely.get_coordinates(s.centroid) + rng.random((40, 2)) for s in shapes]
+owner = np.repeat(np.arange(len(shapes)), 40)
+for method in ("lloyd", "even"):
+    for field in (None, PictureField.of(reference)):
+        engine = Relaxation(np.concatenate(dots), shapes, None, owner, field, method=method)
+        engine.run(3)
+        look(f"{method}, {field is not None}")
+cells = engine.tessellation()
+for _ in solve_radii(engine.points, reference.darkness, DotRule(0.1, 0.2), tessellation=cells):
+    pass
+look("sizes")
+print(json.dumps(late))
+"""
+
+
+@pytest.mark.skipif(not store.can_load(), reason="no store is loaded here")
+def test_after_warming_areas_and_lines_import_no_numba():
+    for command in (["-m", "stippler.warm"], ["-c", AREAS]):
+        done = subprocess.run(
+            [sys.executable, *command], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == []

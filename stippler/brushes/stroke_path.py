@@ -26,15 +26,12 @@ class PointerSample:
     x, y : float, mm
     pressure : float
         0..1; 1 where there is no pen.
-    tilt : float
-        Radians from upright; 0 where there is no pen.
     t : float, s
     """
 
     x: float
     y: float
     pressure: float = 1.0
-    tilt: float = 0.0
     t: float = 0.0
 
 
@@ -167,7 +164,6 @@ def between(a: PointerSample, b: PointerSample, share: float) -> PointerSample:
         a.x + share * (b.x - a.x),
         a.y + share * (b.y - a.y),
         a.pressure + share * (b.pressure - a.pressure),
-        a.tilt + share * (b.tilt - a.tilt),
         a.t + share * (b.t - a.t),
     )
 

@@ -78,19 +78,37 @@ def edit_areas(
     """
     before = current_map(document)
     outcome = edit(before)
-    after = outcome.map
-    refuse_locked(document.drawing, before, after)
+    refuse_locked(document.drawing, before, outcome.map)
     document.begin(label)
     try:
-        _set_borders(document, after)
-        _set_areas(document, before, outcome, style, names or {})
-        _hand_over(document, before, after)
+        _take(document, before, outcome, style, names or {})
     except BaseException:
         document.cancel()
         raise
     document.commit()
-    _last[document] = after
+    _last[document] = outcome.map
     return outcome
+
+
+def edit_areas_within(document: Document, edit: Callable[[PlanarMap], Outcome]) -> Outcome:
+    """Edit areas within a stroke that has begun, with whatever else is in it; see `edit_areas`."""
+    before = current_map(document)
+    outcome = edit(before)
+    refuse_locked(document.drawing, before, outcome.map)
+    _take(document, before, outcome, None, {})
+    return outcome
+
+
+def _take(
+    document: Document,
+    before: PlanarMap,
+    outcome: Outcome,
+    style: int | None,
+    names: Mapping[int, str],
+) -> None:
+    _set_borders(document, outcome.map)
+    _set_areas(document, before, outcome, style, names)
+    _hand_over(document, before, outcome.map)
 
 
 _last: WeakKeyDictionary[Document, PlanarMap] = WeakKeyDictionary()

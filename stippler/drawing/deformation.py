@@ -19,6 +19,7 @@ Box = tuple[float, float, float, float]
 UNIT_MATRIX = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 LEAST_CAGE, MOST_CAGE = 4, 64
 MOST_PINS = 200
+_NEWTON = 30
 _FINE = 6  # samples a cage's cell, each way
 
 
@@ -148,6 +149,31 @@ class Deformation:
         )
         return out
 
+    def inverse_of(self, points: ArrayLike) -> Points:
+        """Return from where points came, by Newton's method; NaN where nothing leads there."""
+        goal = np.asarray(points, np.float64).reshape(-1, 2)
+        h = np.linalg.inv(np.array(self.matrix).reshape(3, 3))
+        bent = replace(self, matrix=UNIT_MATRIX)
+        at = goal.copy()
+        if self.cage is not None or self.pins_mm:
+            at = _solved(bent, goal)
+        w = at @ h[2, :2] + h[2, 2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            out = (at @ h[:2, :2].T + h[:2, 2]) / w[:, None]
+        return np.asarray(out)
+
+    def followed_by(self, other: Deformation, box: Box, points: int = 9) -> Deformation:
+        """Return a deformation that comes near to this one and then another, over a box in mm.
+
+        Cage and pins become one finer cage, which is met at its points.
+        """
+        size = self.cage.box_mm if self.cage is not None else box
+        n = max((points, self.cage.rows, self.cage.columns) if self.cage else (points, LEAST_CAGE))
+        cage = Cage.over(size, min(n, MOST_CAGE), min(n, MOST_CAGE))
+        rest = cage.rest_mm()
+        moved = other.apply(replace(self, matrix=UNIT_MATRIX).apply(rest)) - rest
+        return Deformation(self.matrix, replace(cage, moves_mm=_pairs(moved)))
+
     def folds(self, box: Box) -> Points:
         """Return places in a box, before the deformation, where it folds over; none is good."""
         from stippler.kernels.warp.deform import find_folds
@@ -190,6 +216,27 @@ def _xy(pair: Any) -> XY:
 
 def _pairs(moves: Points) -> tuple[XY, ...]:
     return tuple((float(x), float(y)) for x, y in moves.reshape(-1, 2))
+
+
+def _solved(bent: Deformation, goal: Points) -> Points:
+    """Return where a deformation without perspective takes to a goal from."""
+    at, step = goal.copy(), 1e-4
+    size = max(float(np.ptp(goal, axis=0).max(initial=0.0)), 1.0) if len(goal) else 1.0
+    for _ in range(_NEWTON):
+        there = bent.apply(at)
+        off = there - goal
+        if len(off) == 0 or np.abs(off).max() < 1e-9:
+            break
+        dx = (bent.apply(np.add(at, (step, 0.0))) - there) / step
+        dy = (bent.apply(np.add(at, (0.0, step))) - there) / step
+        det = dx[:, 0] * dy[:, 1] - dx[:, 1] * dy[:, 0]
+        det = np.where(np.abs(det) < 1e-6, np.inf, det)
+        u = (off[:, 0] * dy[:, 1] - off[:, 1] * dy[:, 0]) / det
+        v = (dx[:, 0] * off[:, 1] - dx[:, 1] * off[:, 0]) / det
+        at -= np.clip(np.column_stack([u, v]), -0.25 * size, 0.25 * size)
+    bad = np.abs(bent.apply(at) - goal).max(axis=1, initial=0.0) > 1e-6 * size
+    at[bad] = np.nan
+    return at
 
 
 def before_fold(start: Deformation, end: Deformation, box: Box) -> Deformation:

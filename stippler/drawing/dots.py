@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stippler.errors import ParameterError
+from stippler.kernels.shapes.dot_shape import MAX_ELONGATION
+
+__all__ = ["FIXED", "FREE", "MAX_ELONGATION", "NO_CURVE", "ON_CURVE", "Dots", "first_seeds"]
 
 Index = NDArray[np.intp] | NDArray[np.bool_] | slice
-
-MAX_ELONGATION = 4.0
-"""Largest ratio of a dot's long axis to its short one."""
 
 FREE, FIXED, ON_CURVE = 0, 1, 2
 """What holds a dot: nothing, its place, or a curve that it may move along."""

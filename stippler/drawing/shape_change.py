@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from stippler.drawing.dots import MAX_ELONGATION, Dots
 from stippler.drawing.reference import Reference
 from stippler.errors import ParameterError
+from stippler.kernels.shapes.dot_shape import hash_unit
 
 Floats = NDArray[np.float64]
 
@@ -186,12 +187,3 @@ def _stepped(
 def _shorter(turn: Floats) -> Floats:
     """Return turns that lead to the same axis; the cut lies where exact angles do not."""
     return turn - math.pi * np.floor(turn / math.pi + _LONGER_WAY)
-
-
-def hash_unit(seed: NDArray[np.uint32], salt: int) -> Floats:
-    """Return a number in [0, 1) for each seed; other salts give other numbers."""
-    x = np.asarray(seed, np.uint32) ^ np.uint32(salt)
-    for shift, factor in ((16, 0x7FEB352D), (15, 0x846CA68B)):
-        x = (x ^ (x >> np.uint32(shift))) * np.uint32(factor)
-    x ^= x >> np.uint32(16)
-    return np.asarray(x >> np.uint32(8), np.float64) / 2**24

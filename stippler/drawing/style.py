@@ -240,7 +240,11 @@ class Style:
                     f"{word!r} is unknown", "style", f"one of {', '.join(BY_WORD)}"
                 )
         kept = {} if base is None else {name: getattr(base, name) for name in _FIELDS}
-        return cls(**kept | {BY_WORD[word].name: value for word, value in keywords.items()})
+        given = {BY_WORD[word].name: value for word, value in keywords.items()}
+        for one, other in (_COUNTED, _COUNTED[::-1]):
+            if given.get(one) is not None and given.get(other) is None:
+                kept[other] = None  # what is given counts before the base's
+        return cls(**kept | given)
 
     def __post_init__(self) -> None:
         for about in PARAMETERS:
@@ -270,6 +274,7 @@ PARAMETERS: tuple[Parameter, ...] = parameters_of(Style)
 BY_WORD = {about.word: about for about in PARAMETERS}
 """The parameters by what Python calls them."""
 
+_COUNTED = ("n_dots", "density_per_cm2")
 _FIELDS = tuple(field.name for field in fields(Style))
 
 

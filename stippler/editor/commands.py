@@ -19,6 +19,7 @@ GROUPS = {
     "nodes": "Nodes",
     "work": "Dots",
     "line": "Lines",
+    "pattern": "Patterns",
     "tool": "Tool",
     "view": "View",
     "panel": "Panels",

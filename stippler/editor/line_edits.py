@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Points = NDArray[np.float64]
 
+_STILL_MM = 1e-6
+
 
 def lines_of(document: Document) -> dict[int, Line]:
     """Return the lines of a document by their ids."""
@@ -154,8 +156,10 @@ def spread_held(document: Document) -> int:
         return 0
     ids = sorted(set(dots.curve[rows].tolist()))
     which = np.searchsorted(ids, dots.curve[rows])
-    before = dots.position_mm[rows].copy()
-    along, _ = spread_all([lines[k] for k in ids], which, dots.parameter[rows], tone_of(document))
+    before = dots.parameter[rows].copy()
+    along, _ = spread_all([lines[k] for k in ids], which, before, tone_of(document))
+    far = np.abs(along - before) > _STILL_MM
     for j, k in enumerate(ids):
-        put(document, rows[which == j], lines[k], along[which == j])
-    return int((np.abs(document.dots.position_mm[rows] - before) > 1e-9).any(axis=1).sum())
+        mine = far & (which == j)
+        put(document, rows[mine], lines[k], along[mine])
+    return int(far.sum())

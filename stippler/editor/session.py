@@ -171,6 +171,7 @@ class Session(SessionState):
             self.messages.say("there are no dots to relax", WARNING)
             return
         self.supersede()
+        self._spread_on_lines(document)
         label = "Relax all" if areas is None else "Relax areas"
         frozen = replace(document.drawing, dots=document.begin_run(label))
         style = replace(self.style, weighted=weighted)
@@ -180,6 +181,16 @@ class Session(SessionState):
             lambda: stippling.relax_drawing(frozen, style, iterations, areas),
             lambda k: Relaxing(k, "relax", source, total=iterations),
         )
+
+    def _spread_on_lines(self, document: Document) -> None:
+        """Spread dots that lines hold along them, as a step of its own if any moves."""
+        from stippler.drawing.dots import ON_CURVE
+        from stippler.editor.line_edits import spread_held
+
+        if (document.dots.constraint == ON_CURVE).any():
+            document.begin("Spread dots on lines")
+            spread_held(document)
+            document.commit()
 
     def take_over(self) -> bool:
         """Let a person edit the dots of a draft that is being relaxed: it is adopted as it is.
@@ -214,8 +225,11 @@ class Session(SessionState):
         if document is None or not self.paintable or document.in_stroke:
             self.messages.say("there is no page to fill yet", WARNING)
             return
+        from stippler.stippling.part_of_area import part_for_dots
+
         self.supersede()
-        parts = [document.partition.part_of(k) for k in areas]
+        drawing, owned = document.drawing, document.partition.part_of
+        parts = [part_for_dots(drawing, k, owned(k)) for k in areas if not owned(k).is_empty]
         outlines, source = [part for part in parts if not part.is_empty], self.source
         self.launch(
             lambda: stippling.fill(outlines, values),
@@ -304,7 +318,7 @@ class Session(SessionState):
         if self.document is None:
             self.messages.say("there is no drawing to export yet", WARNING)
             return
-        if not self.n_dots:
+        if not self.n_dots and not self.document.drawing.lines:
             self.messages.say("there are no dots to export", WARNING)
             return
         values = {"dpi": dpi} if options is None else options

@@ -15,6 +15,7 @@ INK: Color = (0.086, 0.082, 0.094)
 FIXED: Color = (0.72, 0.30, 0.12)
 SELECTED: Color = (0.10, 0.42, 0.80)
 GUIDE: Color = (0.16, 0.55, 0.60)
+PATTERN: Color = (0.72, 0.45, 0.20)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,8 @@ class Frame:
         Of fixed and of selected dots; None draws them like all others, and no guides.
     dots : bool
         False leaves them out.
+    patterns : bool
+        Whether outlines of patterns are marked.
     preview : Preview or None
         Shows dots as a brush or a panel would leave them; by uniforms only.
     opacity : float
@@ -46,6 +49,7 @@ class Frame:
     ink: Color = INK
     marks: tuple[Color, Color] | None = (FIXED, SELECTED)
     dots: bool = True
+    patterns: bool = False
     preview: Preview | None = None
     opacity: float = 0.0
     adjustment: Adjustment = NEUTRAL

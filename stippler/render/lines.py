@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import moderngl
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from stippler.camera import Camera, Size
 from stippler.drawing.line import Line
+from stippler.drawing.pattern import Pattern
 from stippler.render.paper import Color, Origin, page_uniforms
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
@@ -23,7 +24,7 @@ _NONE: Rows = np.empty((0, _N_FLOATS), np.float32)
 
 
 class LineBuffer:
-    """Segments of lines on the GPU: those drawn in ink, and guides.
+    """Segments of lines on the GPU: those drawn in ink, guides, and outlines of patterns.
 
     Attributes
     ----------
@@ -34,7 +35,7 @@ class LineBuffer:
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._rows: dict[int, tuple[Line, Origin, Rows]] = {}
-        self.ink, self.guides = _Segments(ctx), _Segments(ctx)
+        self.ink, self.guides, self.patterns = (Segments(ctx) for _ in range(3))
         self.revision = 0
 
     def set(self, lines: Mapping[int, Line], origin_mm: Origin) -> None:
@@ -51,6 +52,11 @@ class LineBuffer:
         self.guides.set([rows for line, rows in shown if not line.is_inked])
         self.revision += 1
 
+    def set_patterns(self, patterns: Iterable[Pattern], origin_mm: Origin) -> None:
+        """Take the outlines of patterns, as far as they meet the page."""
+        self.patterns.set([_outlines_of(pattern, origin_mm) for pattern in patterns])
+        self.revision += 1
+
     @property
     def is_empty(self) -> bool:
         """Whether there is no ink."""
@@ -58,12 +64,12 @@ class LineBuffer:
 
     def release(self) -> None:
         """Free the GL buffers."""
-        for one in (self.ink, self.guides):
+        for one in (self.ink, self.guides, self.patterns):
             if one.gl is not None:
                 one.gl.release()
 
 
-class _Segments:
+class Segments:
     """A GL buffer of segments, with what is in it."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
@@ -73,9 +79,11 @@ class _Segments:
 
     @property
     def n(self) -> int:
+        """How many."""
         return len(self.rows)
 
     def set(self, parts: list[Rows]) -> None:
+        """Upload others."""
         self.rows = np.concatenate(parts) if parts else _NONE
         if not self.n:
             return
@@ -97,13 +105,26 @@ def _rows_of(line: Line, origin_mm: Origin) -> Rows:
     return rows
 
 
+def _outlines_of(pattern: Pattern, origin_mm: Origin) -> Rows:
+    """Return the edges of a pattern's polygons that have a corner on the page."""
+    corners, start = pattern.rings_mm()
+    at = corners - origin_mm
+    on = (np.abs(at) <= origin_mm).all(axis=1)
+    shown = np.repeat(np.add.reduceat(on, start[:-1]) > 0, np.diff(start))
+    following = np.arange(1, len(at) + 1)
+    following[start[1:] - 1] = start[:-1]
+    rows = np.zeros((int(shown.sum()), _N_FLOATS), np.float32)
+    rows[:, :2], rows[:, 2:4] = at[shown], at[following[shown]]
+    return rows
+
+
 class LinesPass:
     """Lays lines into an ink target, before dots are added; draws guides as marks."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._programs: dict[str, Program] = {}
-        self._arrays: dict[tuple[str, int], moderngl.VertexArray] = {}
+        self._arrays: dict[tuple[str, int], tuple[moderngl.Buffer, moderngl.VertexArray]] = {}
 
     def draw(self, buffer: LineBuffer, camera: Camera, whole_px: Size, origin_mm: Origin) -> None:
         """Ink lines into the target in use; where they overlap the larger coverage counts."""
@@ -112,40 +133,37 @@ class LinesPass:
         set_state(self._ctx, "most")
         self._run("", buffer.ink, _scaled(camera, whole_px, origin_mm))
 
-    def draw_guides(
-        self, buffer: LineBuffer, camera: Camera, size_px: Size, origin_mm: Origin, color: Color
+    def draw_marks(
+        self, segments: Segments, camera: Camera, size_px: Size, origin_mm: Origin, color: Color
     ) -> None:
         """Draw fine lines in a colour, whatever the zoom, into the framebuffer in use."""
-        if not buffer.guides.n:
+        if not segments.n:
             return
         set_state(self._ctx, "over")
         values = page_uniforms(camera, size_px, origin_mm)
-        self._run("MARKS", buffer.guides, values | {"u_color": color, "u_half_px": _GUIDE_PX / 2})
+        self._run("MARKS", segments, values | {"u_color": color, "u_half_px": _GUIDE_PX / 2})
 
-    def _run(self, kind: str, segments: _Segments, uniforms: dict[str, Any]) -> None:
+    def _run(self, kind: str, segments: Segments, uniforms: dict[str, Any]) -> None:
         program = self._programs.get(kind)
         if program is None:
             defines = [kind] if kind else []
             program = self._programs[kind] = Program(self._ctx, "lines.vert", "lines.frag", defines)
         assert segments.gl is not None
-        key = (kind, segments.gl.glo)
-        array = self._arrays.get(key)
-        if array is None:
-            self._forget(kind)
+        key = (kind, id(segments))
+        buffer, array = self._arrays.get(key, (None, None))
+        if array is None or buffer is not segments.gl:
+            if array is not None:
+                array.release()
             form = "4f4 8x 2f4/i" if kind else "4f4 2f4 2f4/i"
             names = ("a_ends", "a_loose") if kind else ("a_ends", "a_half", "a_loose")
             array = self._ctx.vertex_array(program.gl, [(segments.gl, form, *names)])
-            self._arrays[key] = array
+            self._arrays[key] = segments.gl, array
         program.set(uniforms)
         array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=segments.n)
 
-    def _forget(self, kind: str) -> None:
-        for key in [key for key in self._arrays if key[0] == kind]:
-            self._arrays.pop(key).release()
-
     def release(self) -> None:
         """Free the GL objects."""
-        for array in self._arrays.values():
+        for _, array in self._arrays.values():
             array.release()
         self._arrays.clear()
         for program in self._programs.values():

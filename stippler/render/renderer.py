@@ -6,7 +6,7 @@ import moderngl
 
 from stippler.drawing.preview import Preview
 from stippler.render.dots import DotsPass
-from stippler.render.frame import GUIDE, Frame
+from stippler.render.frame import GUIDE, PATTERN, Frame
 from stippler.render.ground import GroundPass
 from stippler.render.ink import InkPass
 from stippler.render.lines import LinesPass
@@ -70,7 +70,14 @@ class Renderer:
         if frame.marks and frame.dots:
             self._dots.draw_marks(scene.dots, frame, scene.origin_mm, frame.marks)
         if frame.marks:
-            self._lines.draw_guides(scene.lines, camera, size_px, scene.origin_mm, GUIDE)
+            self._draw_marks(frame)
+
+    def _draw_marks(self, frame: Frame) -> None:
+        """Draw guides, and the outlines of patterns where they are asked for."""
+        scene, view = self.scene, (frame.camera, frame.size_px)
+        if frame.patterns:
+            self._lines.draw_marks(scene.lines.patterns, *view, scene.origin_mm, PATTERN)
+        self._lines.draw_marks(scene.lines.guides, *view, scene.origin_mm, GUIDE)
 
     def _gather(self, frame: Frame) -> None:
         """Gather the ink of lines and black dots; grounds and white dots by themselves."""

@@ -113,6 +113,8 @@ class Scene:
                 self.set_positions(dots.position_mm, dots.radius_mm)
         if is_other or changed.has(records.LINE):
             self.set_lines(document.drawing.lines)
+        if is_other or changed.has(records.PATTERN):
+            self.lines.set_patterns(document.drawing.patterns.values(), self.origin_mm)  # type: ignore[arg-type]
         self._selected_ids = selected
         self._document, self._cursor = document, changed.cursor
 
@@ -124,6 +126,7 @@ class Scene:
         self.grounds.set((), self.origin_mm)
         self.set_dots(Dots.none(), np.zeros(0, np.bool_))
         self.set_lines({})
+        self.lines.set_patterns((), self.origin_mm)
 
     # --- its parts --------------------------------------------------------------------------
 

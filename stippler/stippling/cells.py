@@ -13,7 +13,8 @@ from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_c
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.spacing import LEAST, MASS, NEIGHBOUR, UNIT
+from stippler.kernels.cells.spacing import UNIT
+from stippler.kernels.cells.spacing_lanes import LEAST, MASS, NEIGHBOUR
 from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Spacing, Stars
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN

@@ -35,8 +35,9 @@ def running_sums(density: Weights | None, parts: Compartments) -> Field:
     sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
     origin = np.asarray(density.origin_mm, np.float64)
     shape = density.levels.shape if isinstance(density, PictureField) else density.values.shape
+    bleed = density.bleed if isinstance(density, PictureField) else 0
     table = _table_of_compartment(density, parts)
-    box, table, window_of = _windows(_boxes_px(parts.box, sides, origin, shape), table)
+    box, table, window_of = _windows(_boxes_px(parts.box, sides, origin, shape, bleed), table)
     size = box[:, 2:] - box[:, :2]
     n_sums = size[:, 1] * (size[:, 0] + 1)
     first = np.cumsum(n_sums) - n_sums
@@ -69,11 +70,12 @@ def _boxes_px(
     sides: NDArray[np.float64],
     origin: NDArray[np.float64],
     shape: tuple[int, ...],
+    bleed: int,
 ) -> Whole:
     """Return the pixels that boxes touch: x0, y0, x1, y1."""
-    most = np.array([shape[1], shape[0]])
-    low = np.clip(np.floor((box[:, :2] - origin) / sides - _ROUNDING), 0, most)
-    high = np.clip(np.ceil((box[:, 2:] - origin) / sides + _ROUNDING), 0, most)
+    least, most = -bleed, np.array([shape[1], shape[0]]) + bleed
+    low = np.clip(np.floor((box[:, :2] - origin) / sides - _ROUNDING), least, most)
+    high = np.clip(np.ceil((box[:, 2:] - origin) / sides + _ROUNDING), least, most)
     return np.column_stack([low, np.maximum(low, high)]).astype(np.int64)
 
 

@@ -52,7 +52,7 @@ def placed(draft: Draft) -> Iterator[tuple[float, Floats]]:
         yield 1.0, grid(density, style.spacing, angle, draft.n_wanted)
         return
     if style.spacing == "along":
-        yield 1.0, rows_along(density, angle, draft.n_wanted)
+        yield 1.0, rows_along(density, angle, draft.n_wanted, style.seed)
         return
     if style.first_dots == "pulse-density":
         halftone = pulses(density, style.growth, start=style.start, seed=style.seed)

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 _TRIES = 10
 _ROWS = 1.25  # distance of rows, of the mean spacing in a middle tone
-_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_OFF = 0.3  # of its distance to the next, that a dot lies off within its row
 _SAMPLES = 6.0  # places along a row at which a spacing is looked at
 
 
@@ -39,10 +39,12 @@ def grid(density: NDArray[np.float32], kind: str, angle_rad: float, n_wanted: in
     return _met(laid, spacing, wanted)
 
 
-def rows_along(density: NDArray[np.float32], angle_rad: float, n_wanted: int | None) -> Floats:
+def rows_along(
+    density: NDArray[np.float32], angle_rad: float, n_wanted: int | None, seed: int
+) -> Floats:
     """Set dots in rows along a direction, as close in each row as the density asks.
 
-    Neighbouring rows begin by the golden ratio apart, so that no second direction shows.
+    Within its row each dot lies a little off by chance, so that no second direction shows.
     """
     total = float(density.sum(dtype=np.float64))
     wanted = total if n_wanted is None else float(n_wanted)
@@ -52,12 +54,12 @@ def rows_along(density: NDArray[np.float32], angle_rad: float, n_wanted: int | N
     spacing = 1.0 / math.sqrt(typical)
 
     def laid(factor: float) -> Floats:
-        return _rows(density / np.float32(factor**2), _ROWS * spacing, angle_rad)
+        return _rows(density / np.float32(factor**2), _ROWS * spacing, angle_rad, seed)
 
     return _met(laid, 1.0, wanted)
 
 
-def _rows(density: NDArray[np.float32], gap: float, angle_rad: float) -> Floats:
+def _rows(density: NDArray[np.float32], gap: float, angle_rad: float, seed: int) -> Floats:
     h, w = density.shape
     step = gap / _SAMPLES
     reach = 0.5 * math.hypot(w, h)
@@ -70,13 +72,15 @@ def _rows(density: NDArray[np.float32], gap: float, angle_rad: float) -> Floats:
     at = np.where(inside, x, 0).astype(np.intp), np.where(inside, y, 0).astype(np.intp)
     charge = np.where(inside, density[at[1], at[0]], 0.0) * (gap * step)
     sums = np.cumsum(charge, axis=1, dtype=np.float64)
-    phase = np.mod(np.arange(len(across)) * _GOLDEN, 1.0)[:, None]
+    rng = np.random.default_rng([seed, len(across)])
+    phase = rng.random(len(across))[:, None]
     passed = np.floor(sums + phase)
     before = np.concatenate((np.floor(phase), passed[:, :-1]), axis=1)
     row, column = np.nonzero(passed > before)
     over = (sums + phase)[row, column] - passed[row, column]
     back = over / np.maximum(charge[row, column], 1e-12)
     t = along[column] + (0.5 - np.minimum(back, 1.0)) * step
+    t += step / np.maximum(charge[row, column], 1e-12) * rng.uniform(-_OFF, _OFF, len(t))
     points = np.column_stack((0.5 * w + c * t - s * across[row], 0.5 * h + s * t + c * across[row]))
     return _on_ink(points, density)
 

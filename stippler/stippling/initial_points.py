@@ -18,6 +18,7 @@ from stippler.stippling.compartments import polygon_of
 from stippler.stippling.fill import ARRANGEMENTS
 
 _NO_DOTS = np.empty((0, 2))
+_CORNER = np.zeros((1, 2))
 
 _MOST_EMPTY = 8.0  # times its area that the boxes around an area may cover
 _MOST_BOXES = 50_000
@@ -77,7 +78,7 @@ def hexagonal(density: NDArray[np.float32]) -> NDArray[np.float64]:
     return _exactly(
         round(wanted),
         math.sqrt(2.0 / math.sqrt(3.0) * inked / wanted),
-        lambda spacing: _on_ink(_hexagons(w, h, spacing), density),
+        lambda spacing: _on_ink(_hexagons_in(_CORNER, np.array([(w, h)]), spacing), density),
         1.0 / _MORE,
     )
 
@@ -270,18 +271,6 @@ def _exactly(
         return best
     over = (np.arange(n_over) + 0.5) * (len(best) / n_over)
     return np.delete(best, over.astype(np.intp), axis=0)
-
-
-def _hexagons(width: float, height: float, spacing: float) -> NDArray[np.float64]:
-    pitch = spacing * math.sqrt(0.75)
-    y = np.arange(pitch / 2, height, pitch)
-    x = np.arange(spacing / 4, width, spacing)
-    grid = np.empty((len(y), len(x), 2))
-    grid[..., 0] = x
-    grid[1::2, :, 0] += spacing / 2
-    grid[..., 1] = y[:, None]
-    flat = grid.reshape(-1, 2)
-    return flat[flat[:, 0] < width]
 
 
 def _on_ink(position: NDArray[np.float64], density: NDArray[np.float32]) -> NDArray[np.float64]:

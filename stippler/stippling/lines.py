@@ -81,7 +81,13 @@ class LineIndex:
     def at(self, line: Ints, along: Points) -> Points:
         """Return the places at arc lengths along lines, many lines at once."""
         s = self._first[line] + np.where(self.closed[line], along % self.lengths[line], along)
-        return np.column_stack([np.interp(s, self._s, self._at[:, k]) for k in (0, 1)])
+        k = np.clip(np.searchsorted(self._s, s, side="right") - 1, 0, len(self._s) - 2)
+        t = np.clip((s - self._s[k]) / np.maximum(self._s[k + 1] - self._s[k], 1e-300), 0.0, 1.0)
+        return np.asarray(self._at[k] + t[:, None] * (self._at[k + 1] - self._at[k]))
+
+    def whole(self, line: Ints, along: Points) -> Points:
+        """Return arc lengths along all lines laid end to end."""
+        return np.asarray(self._first[line] + along)
 
     def nearest(self, points: Points) -> tuple[Ints, Points, Points]:
         """Return for each point its line or -1, arc length along it, distance to its edge."""
@@ -162,7 +168,7 @@ def adhere(index: LineIndex, points: Points, tone: Tone | None = None) -> Adhere
     share = 0.5 * (share * share * (3.0 - 2.0 * share))[pulled, None]
     out[pulled] += share * (feet[pulled] - out[pulled])
     mine = np.flatnonzero(on)
-    mine = mine[np.lexsort((along[mine], line[mine]))]
+    mine = mine[np.argsort(index.whole(line[mine], along[mine]), kind="stable")]
     along[mine] = _spread_many(index, line[mine], along[mine], tone)
     out[mine] = index.at(line[mine], along[mine])
     return Adhered(out, np.where(on, line, -1), np.where(on, along, 0.0))
@@ -171,7 +177,7 @@ def adhere(index: LineIndex, points: Points, tone: Tone | None = None) -> Adhere
 def _spread_many(index: LineIndex, line: Ints, along: Points, tone: Tone | None) -> Points:
     """Spread dots along the lines they are on; all lines at once where there is no tone."""
     out = np.empty(len(along))
-    order = np.lexsort((along, line))
+    order = np.argsort(index.whole(line, along), kind="stable")
     owner, at = line[order], along[order]
     if tone is not None:
         bounds = np.flatnonzero(np.diff(owner, prepend=-2, append=-2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -31,6 +32,8 @@ class PictureField:
         Position of the corner of pixel (0, 0).
     table_of_shape : (s,) int64
         The table of each shape that compartments are made of; none if all have the first.
+    bleed : int
+        How many pixels around the picture repeat it, mirrored; no more than its shorter side.
     """
 
     levels: NDArray[np.uint16]
@@ -38,6 +41,7 @@ class PictureField:
     pixel_mm: tuple[float, float]
     origin_mm: tuple[float, float] = (0.0, 0.0)
     table_of_shape: NDArray[np.int64] | None = None
+    bleed: int = 0
 
     def __post_init__(self) -> None:
         if self.levels.ndim != 2 or self.levels.size == 0 or self.levels.dtype != np.uint16:
@@ -46,6 +50,8 @@ class PictureField:
             raise ParameterError(f"a table has {N_LEVELS:,} entries", "density")
         if not (np.isfinite(self.tables).all() and float(self.tables.min()) >= 0.0):
             raise ParameterError("has to be finite and not below 0", "density")
+        if not 0 <= self.bleed <= min(self.levels.shape):
+            raise ParameterError(f"{self.bleed} pixels are beside the picture", "bleed")
         of_shape = self.table_of_shape
         if of_shape is not None and not ((of_shape >= 0) & (of_shape < len(self.tables))).all():
             raise ParameterError(f"there are {len(self.tables)} tables", "table of shape")
@@ -56,6 +62,7 @@ class PictureField:
         reference: Reference,
         curves: Sequence[Sequence[Curve]] = ((),),
         table_of_shape: NDArray[np.integer] | Sequence[int] | None = None,
+        bleed_mm: float = 0.0,
     ) -> PictureField:
         """Weigh a page's reference, as it is adjusted, by curves.
 
@@ -67,8 +74,12 @@ class PictureField:
             then ``rule.density``, or ``numpy.square``. None at all: darkness itself.
         table_of_shape : (s,) int, optional
             Which of them each shape (area) has that the run is given; all the first if left out.
+        bleed_mm : float
+            How far around the page the picture goes on, mirrored, as far as its shorter side.
         """
         tables = np.stack([table_of(reference.adjustment.apply, *steps) for steps in curves])
         of_shape = None if table_of_shape is None else np.asarray(table_of_shape, np.int64)
         side = reference.pixel_mm
-        return cls(reference.source.levels, tables, (side, side), table_of_shape=of_shape)
+        levels = reference.source.levels
+        bleed = min(math.ceil(bleed_mm / side), *levels.shape)
+        return cls(levels, tables, (side, side), table_of_shape=of_shape, bleed=bleed)

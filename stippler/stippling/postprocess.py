@@ -20,6 +20,7 @@ _ROUNDS = 5
 _BAND = 3.0  # mean spacings; dots that moves across the edge may come close to
 _CELLS = 6.0  # mean spacings; dots whose cells bound those of dots at the edge
 _NEAR = 1.6  # radii; dots so near the edge may come to touch it
+_LINE = 0.1  # radii; how far inside the edge the ink is compared, whatever the pixels
 
 
 def part_close(
@@ -89,7 +90,7 @@ def even_rim(points: NDArray[np.float64], raster: PageRaster, give: float) -> ND
     if not len(band):
         return points
     *_, (_, radii) = solve_radii(points[band], darkness, raster.rule, len(points))
-    line = min(0.5, 0.5 * raster.rule.radius_min)
+    line = _LINE * raster.rule.radius_min
     for axis, far, edge in (
         (1, False, darkness[0]),
         (1, True, darkness[-1]),

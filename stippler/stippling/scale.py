@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 
 from stippler.drawing.deformation import Deformation
-from stippler.drawing.dots import FREE, Dots, first_seeds
+from stippler.drawing.dots import FREE, NO_CURVE, Dots, first_seeds
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import MAX_DOTS
 from stippler.errors import ParameterError
@@ -29,6 +29,8 @@ Points = NDArray[np.float64]
 Whole = TypeVar("Whole", bound="Drawing")
 
 _STEPS = 6
+_SETTLING = 8  # steps by the tone, where there is a picture
+_FEWEST = 20
 _PARENTS = 3  # dots that share the ink of one that goes
 
 
@@ -61,13 +63,20 @@ class Scaling:
             raise ParameterError(f"{self.least_radius_mm:g} mm is no radius", "scale")
 
 
-def scaled_dots(dots: Dots, outlines: dict[int, Polygon | MultiPolygon], scaling: Scaling) -> Dots:
+def scaled_dots(
+    dots: Dots,
+    outlines: dict[int, Polygon | MultiPolygon],
+    scaling: Scaling,
+    resting: frozenset[int] = frozenset(),
+) -> Dots:
     """Return dots scaled, fewer or more, each area by itself.
 
     Parameters
     ----------
     outlines : dict of area to polygon
         Scaled; what dots are relaxed in.
+    resting : set of areas
+        Whose dots are not relaxed.
 
     Notes
     -----
@@ -83,9 +92,9 @@ def scaled_dots(dots: Dots, outlines: dict[int, Polygon | MultiPolygon], scaling
     for k, area in enumerate(np.unique(dots.area).tolist()):
         mine = np.flatnonzero(dots.area == area)
         rng = np.random.default_rng([scaling.seed, k])
-        part = _part(dots, mine, position, ink, wanted[mine], rng, next_id)
+        part = _part(dots, mine, position, ink, wanted[mine], rng, next_id, scaling)
         next_id = max(next_id, int(part.id.max(initial=-1)) + 1)
-        if len(part) != len(mine):
+        if len(part) != len(mine) and area not in resting:
             _relax(part, outlines.get(area))
         parts.append(part)
     if not parts:
@@ -97,6 +106,8 @@ def scaled_dots(dots: Dots, outlines: dict[int, Polygon | MultiPolygon], scaling
 def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     """Return a drawing at another size: page, areas, lines, patterns, reference and dots."""
     from stippler.drawing.drawing import Page
+    from stippler.drawing.partition import Partition
+    from stippler.stippling.part_of_area import part_for_dots
 
     f = scaling.factor
     reference = drawing.reference
@@ -116,8 +127,39 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
             patterns={k: _scaled_pattern(p, f) for k, p in drawing.patterns.items()},
             borders={},  # made anew from the outlines, on the grid
         )
-    dots = scaled_dots(drawing.dots, drawing.outlines(), scaling)
-    return replace(drawing, dots=dots, reference=reference)
+    before = drawing.dots
+    toned: frozenset[int] = frozenset()
+    if reference is not None:
+        toned = frozenset(k for k in drawing.areas if drawing.style_of(k).sizes == "tone")
+    partition = Partition(drawing.outlines())
+    parts = {k: part_for_dots(drawing, k, partition.part_of(k)) for k in drawing.areas}
+    dots = scaled_dots(before, parts, scaling, toned)
+    drawing = replace(drawing, dots=dots, reference=reference)
+    for area in sorted(toned):
+        if np.count_nonzero(before.area == area) != np.count_nonzero(dots.area == area):
+            _solve(drawing, area, parts[area], scaling.least_radius_mm)
+    return drawing
+
+
+def _solve(drawing: Drawing, area: int, part: Polygon | MultiPolygon, least_mm: float) -> None:
+    """Let an area's dots settle in its tone, and size them for it, as when they were made."""
+    import shapely
+
+    from stippler.stippling.pipeline import run
+    from stippler.stippling.task import SETTLE, Standing, Task
+
+    style, reference, dots = drawing.style_of(area), drawing.reference, drawing.dots
+    rows = np.flatnonzero(dots.area == area)
+    if len(rows) < _FEWEST or reference is None:
+        return
+    rows = rows[shapely.contains_xy(part, *dots.position_mm[rows].T)]
+    style = replace(style, n_dots=len(rows), size_range_mm=None, iterations=_SETTLING)
+    fixed = dots.fixed[rows]
+    standing = Standing(dots.position_mm[rows], dots.radius_mm[rows], fixed)
+    *_, made = run(Task(style, reference, SETTLE, (part,), standing), snapshots=False)
+    free = rows[~fixed]
+    dots.position_mm[free] = made.position_mm[~fixed]
+    dots.radius_mm[free] = np.maximum(made.radius_mm[~fixed], least_mm)
 
 
 def _scaled_line(line: Any, by: Deformation, f: float) -> Any:
@@ -142,7 +184,8 @@ def _numbers(dots: Dots, ink: Points, scaling: Scaling) -> Points:
     """Return for each dot how many there are to be in its place."""
     share = np.ones(len(dots))
     if scaling.n_dots is not None:
-        share *= scaling.n_dots / max(len(dots), 1)
+        n_fixed = int(np.count_nonzero(dots.fixed))
+        share *= max(scaling.n_dots - n_fixed, 0) / max(len(dots) - n_fixed, 1)
     least = scaling.least_radius_mm**2
     if least > 0.0:
         share = np.minimum(share, ink / np.maximum(least, ink / np.maximum(share, 1e-12)))
@@ -153,12 +196,12 @@ def _numbers(dots: Dots, ink: Points, scaling: Scaling) -> Points:
 
 def _part(
     dots: Dots, mine: NDArray[np.intp], position: Points, ink: Points, wanted: Points,
-    rng: np.random.Generator, next_id: int,
+    rng: np.random.Generator, next_id: int, scaling: Scaling,
 ) -> Dots:  # fmt: skip
     """Return an area's dots after some went or some came, with the ink of all of them."""
     from scipy.spatial import cKDTree
 
-    at, own = position[mine], ink[mine]
+    at, own, least_ink = position[mine], ink[mine], scaling.least_radius_mm**2
     count = _rounded(at, wanted, dots.is_fixed(mine))
     stays = np.flatnonzero(count > 0)
     if not len(stays):
@@ -166,6 +209,7 @@ def _part(
         count[stays] = 1
     out = dots.take(mine[stays])
     out.position_mm[:] = at[stays]
+    out.parameter *= scaling.factor
     new_ink = own[stays].copy()
     goes = np.flatnonzero(count == 0)
     free = np.flatnonzero(~out.fixed)
@@ -178,8 +222,20 @@ def _part(
         np.add.at(new_ink, free[who], weight)
     more = count[stays] - 1
     new_ink /= 1 + more
+    _at_least(new_ink, least_ink, free)
     out.radius_mm[:] = np.sqrt(new_ink)
     return _with_new(out, more, rng, next_id) if more.any() else out
+
+
+def _at_least(ink: Points, least: float, free: NDArray[np.intp]) -> None:
+    """Give free dots that have less than the least ink as much, taken from all that have more."""
+    if least <= 0.0 or not len(free):
+        return
+    own = ink[free]
+    lack = float(np.maximum(least - own, 0.0).sum())
+    over = np.maximum(own - least, 0.0)
+    share = min(lack / max(float(over.sum()), 1e-300), 1.0)
+    ink[free] = np.maximum(own, least) - share * over
 
 
 def _rounded(at: Points, wanted: Points, fixed: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -220,7 +276,7 @@ def _with_new(dots: Dots, more: NDArray[np.int64], rng: np.random.Generator, nex
     new.position_mm += away[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     new.id[:] = np.arange(next_id, next_id + len(parent))
     new.seed[:] = first_seeds(new.id)
-    new.constraint[:] = FREE
+    new.constraint[:], new.curve[:], new.parameter[:] = FREE, NO_CURVE, 0.0
     return Dots(
         **{x.name: np.concatenate([getattr(d, x.name) for d in (dots, new)]) for x in fields(Dots)}
     )

@@ -6,6 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from stippler.drawing.area import PAGE_AREA
@@ -14,6 +15,7 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
+from stippler.stippling.part_of_area import FEW, part_for_dots
 from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
 
@@ -32,7 +34,8 @@ def relaxing(
     Parameters
     ----------
     areas : collection of int, optional
-        Whose dots are moved; all, if left out. Dots that lie in another area's part stay.
+        Whose dots are moved; all, if left out. Dots that lie in another area's part stay, and
+        so do those between a pattern's polygons or nearer to a line than they may be.
     """
     dots, partition = drawing.dots, Partition(drawing.outlines())
     reference = drawing.reference
@@ -45,12 +48,43 @@ def relaxing(
     mine = partition.area_at(dots.position_mm) == dots.area
     if areas is not None:
         mine &= np.isin(dots.area, list(areas))
+    part_of_row, cut = _cut(drawing, partition, mine)
     rows = np.flatnonzero(mine)
     some = dots if len(rows) == len(dots) else dots.take(rows)
-    used, part_of_dot = np.unique(some.area, return_inverse=True)
+    used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
     standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
-    parts = tuple(partition.part_of(int(k)) for k in used)
+    parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
+    if cut and reference is None and len(rows) < FEW * len(parts):
+        style = replace(style, spacing="lloyd")
     return Task(style, reference, RELAX, parts, standing, steps=steps), rows
+
+
+def _cut(
+    drawing: Drawing, partition: Partition, mine: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], dict[int, Outline]]:
+    """Return each dot's area, or below 0 which polygon of one that patterns or lines cut.
+
+    Dots outside of all polygons are `mine` no longer.
+    """
+    dots, cut = drawing.dots, dict[int, Outline]()
+    owner = dots.area.astype(np.int64)
+    if not (drawing.patterns or drawing.lines):
+        return owner, cut
+    for k in np.unique(owner[mine]).tolist():
+        whole = partition.part_of(k)
+        part = part_for_dots(drawing, k, whole)
+        if part is whole:
+            continue
+        polygons = shapely.get_parts(part)
+        rows = np.flatnonzero(mine & (dots.area == k))
+        found = shapely.STRtree(polygons).query(
+            shapely.points(dots.position_mm[rows]), predicate="intersects"
+        )
+        mine[rows] = False
+        mine[rows[found[0]]] = True
+        owner[rows[found[0]]] = -(found[1] + len(cut) + 1)
+        cut.update(enumerate(polygons.tolist(), start=len(cut) + 1))
+    return owner, cut
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +139,9 @@ def stippling(
         standing = Standing(dots.position_mm[fixed], dots.radius_mm[fixed])
     style = _with_own_number(drawing, partition, area, part, reference)
     whole = drawing.page.width_mm * drawing.page.height_mm
-    parts = () if area == PAGE_AREA and part.area >= (1.0 - _WHOLE) * whole else (part,)
+    cut = part_for_dots(drawing, area, part)
+    is_page = area == PAGE_AREA and cut is part and part.area >= (1.0 - _WHOLE) * whole
+    parts = () if is_page else (cut,)
     task = Task(style, reference, parts_mm=parts, standing=standing,
                 neighbours_mm=dots.position_mm[others])  # fmt: skip
     return AreaTask(area, task, dots.area[others])

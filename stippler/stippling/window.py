@@ -16,8 +16,7 @@ from stippler.kernels.tone.blocks import average_blocks
 PIXELS_PER_DOT = 60
 """Blocks of a reference that is finer are averaged."""
 
-_MIN_PIXELS, _MIN_PIXELS_AT_EDGE = 600_000, 2_500_000
-_INKED_EDGE = 0.1  # mean darkness from which on the picture runs to the page's edge
+_MIN_PIXELS = 600_000  # of a page
 _DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
 
 Box = tuple[float, float, float, float]
@@ -49,18 +48,17 @@ class Window:
     def of_page(cls, reference: Reference, n_dots: int) -> Window:
         """Read all of a reference for so many dots.
 
-        A page of few dots, and more so one whose picture runs to its edge, is read more finely
-        than its dots alone ask for.
+        A page of few dots is read more finely than these alone ask for.
         """
         h, w = reference.source.darkness.shape
-        # the ink along a trimmed edge is evened by pixels, and would be too light with few
-        least = _MIN_PIXELS_AT_EDGE if _runs_out(reference) else _MIN_PIXELS
         if n_dots > _DOTS_PER_PIXEL * h * w:
             return _divided(reference, n_dots)
-        return _read(reference, (0, 0, w, h), n_dots, least, ())
+        return _read(reference, (0, 0, w, h), n_dots, _MIN_PIXELS, ())
 
     @classmethod
-    def of(cls, reference: Reference, box_mm: Box, n_dots: int, *curves: Curve) -> Window:
+    def of(
+        cls, reference: Reference, box_mm: Box, n_dots: int, *curves: Curve, bleed_mm: float = 0.0
+    ) -> Window:
         """Read the box of an area for its dots.
 
         Parameters
@@ -72,12 +70,32 @@ class Window:
             How many the box is to have, about.
         curves : callables
             What the adjusted darkness goes through, as a style's tone curve.
+        bleed_mm : float
+            How far beyond the page the picture goes on, mirrored, where the box does.
         """
         h, w = reference.source.darkness.shape
         side = reference.pixel_mm
         x0, x1 = _touched(box_mm[0] / side, box_mm[2] / side, w)
         y0, y1 = _touched(box_mm[1] / side, box_mm[3] / side, h)
-        return _read(reference, (x0, y0, x1, y1), n_dots, 0, curves)
+        inner = _read(reference, (x0, y0, x1, y1), n_dots, 0, curves)
+        return inner if bleed_mm <= 0.0 else _bled(inner, reference, box_mm, bleed_mm)
+
+
+def _bled(inner: Window, reference: Reference, box_mm: Box, bleed_mm: float) -> Window:
+    """Repeat a window beyond the page, mirrored, as far as a box reaches."""
+    size = (reference.width_mm, reference.height_mm)
+    pads = []
+    for axis in (0, 1):
+        n = inner.darkness.shape[1 - axis]
+        before, after = -box_mm[axis], box_mm[axis + 2] - size[axis]
+        pads.append([
+            min(math.ceil(min(max(beyond, 0.0), bleed_mm) / inner.pixel_mm), n)
+            for beyond in (before, after)
+        ])  # fmt: skip
+    darkness = np.pad(inner.darkness, pads[::-1], mode="symmetric")
+    darkness.flags.writeable = False
+    x, y = (inner.origin_mm[k] - pads[k][0] * inner.pixel_mm for k in (0, 1))
+    return Window(darkness, inner.pixel_mm, (x, y), inner.scale)
 
 
 def _divided(reference: Reference, n_dots: int) -> Window:
@@ -130,10 +148,3 @@ def _looked_up(reference: Reference, box: BoxPx, curves: tuple[Curve, ...]) -> N
 def _touched(low: float, high: float, n: int) -> tuple[int, int]:
     first = min(max(math.floor(low), 0), n - 1)
     return first, min(max(math.ceil(high), first + 1), n)
-
-
-def _runs_out(reference: Reference) -> bool:
-    """Tell whether the picture runs to the edge of the page."""
-    plain = reference.source.darkness
-    edge = np.concatenate((plain[0], plain[-1], plain[:, 0], plain[:, -1]))
-    return float(reference.adjustment.apply(edge).mean()) > _INKED_EDGE

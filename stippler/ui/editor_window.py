@@ -26,6 +26,7 @@ from stippler.editor.keymap import load_keys
 from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
+from stippler.editor.patterns import Patterns
 from stippler.editor.rates import FrameRate
 from stippler.editor.schedule import Schedule
 from stippler.editor.selecting import Selecting
@@ -40,6 +41,7 @@ from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
+from stippler.ui.canvas.pattern_samples import PatternSamples
 from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.panels.areas import AreasPanel
 from stippler.ui.panels.docks import Panels
@@ -49,6 +51,7 @@ from stippler.ui.panels.layout import AREAS, DRAWING, HISTORY, SHAPE, TOOL, VIEW
 from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice
+from stippler.ui.panels.patterns import draw_patterns
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
 from stippler.ui.panels.progress import draw_work
@@ -112,6 +115,8 @@ class Editor:
         self.area_acts = AreaActs(session, self.painting, self.area_jobs)
         self._areas_panel = AreasPanel(self.area_acts)
         self.lines = Lines(session, self.painting)
+        self.patterns = Patterns(session, self.painting)
+        self._pattern_samples = PatternSamples(window.ctx)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self._desk = DeskState(session, self.view, self.painting.toolbox)
@@ -130,6 +135,9 @@ class Editor:
         )
         self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
             "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
+            "pattern": lambda: draw_patterns(
+                self.widgets, self.patterns, self.commands, self._pattern_samples
+            ),
         }
         self.lens_key = LensKey(self.look)
         self.menu, self._writing = MenuBar(), WritingNotice()
@@ -152,6 +160,7 @@ class Editor:
             self.painting,
             Selecting(self.session, self.painting),
             self.lines,
+            self.patterns,
             self.area_acts,
             self.pointer,
             self.view,
@@ -213,6 +222,7 @@ class Editor:
         self.popups.close()
         self.canvas.close()
         self._samples.close()
+        self._pattern_samples.close()
         self.gui.close()
 
     def renew_graphics(self) -> None:
@@ -239,6 +249,7 @@ class Editor:
         self._build(last, dt_s)
         with self._window.frame() as screen:
             try:
+                self.look.patterns_shown = self.painting.toolbox.name == "pattern"
                 self.canvas.draw(
                     self.session,
                     self.painting.toolbox.selection,

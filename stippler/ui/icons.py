@@ -197,6 +197,22 @@ def _bucket(p: Pen) -> None:
     p.line((0.38, 0.06), (0.5, 0.16))
 
 
+def _pattern(p: Pen) -> None:
+    for y, shift in ((0.14, 0.0), (0.38, 0.2), (0.62, 0.0), (0.86, 0.2)):
+        p.line((0.1, y), (0.9, y))
+        if y < 0.8:
+            for x in (0.3 + shift, 0.7 + shift):
+                if x < 0.9:
+                    p.line((x, y), (x, y + 0.24))
+
+
+def _warp(p: Pen) -> None:
+    for k in (0.15, 0.5, 0.85):
+        bend = 0.16 * math.sin(math.pi * k)
+        p.line(*((0.12 + 0.76 * t, k - bend * math.sin(math.pi * t)) for t in _STEPS))
+        p.line(*((k + bend * math.sin(math.pi * t), 0.12 + 0.76 * t) for t in _STEPS))
+
+
 _ICONS: dict[str, Callable[[Pen], None]] = {
     "": _none,
     "add": _add,
@@ -215,6 +231,8 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "comb": _comb,
     "select": _select,
     "line": _line,
+    "pattern": _pattern,
+    "warp": _warp,
     "nodes": _nodes,
     "area": _area,
     "knife": _knife,

@@ -21,6 +21,8 @@ class Look:
         Of text and controls, 1 is at 96 dpi; 0 is what the display tells.
     opacity : float
         Of the reference, 0..1; it is not drawn where `reference_shown` is False.
+    patterns_shown : bool
+        Whether outlines of patterns are marked; their tool does that.
     marks_shown : bool
         Whether fixed and selected dots have colours of their own.
     lens : {"none", "reduce", "magnify"}
@@ -34,6 +36,7 @@ class Look:
     scale: float = 0.0
     dots_shown: bool = True
     marks_shown: bool = True
+    patterns_shown: bool = False
     reference_shown: bool = False
     opacity: float = 0.35
     lens: str = "none"
@@ -44,6 +47,7 @@ class Look:
     def begin(self) -> None:
         """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
         self.dots_shown = self.marks_shown = True
+        self.patterns_shown = False
         self.lens = self.lens if self.lens in LENSES else "none"
         for name in ("reduction", "magnification"):
             kept = getattr(self, name)

@@ -104,7 +104,7 @@ class Preferences:
         self, style: Style, tone: str, width_mm: float, given: Collection[str]
     ) -> tuple[Style, str, float]:
         """Return what to begin with: what was `given`, by name, and else what was used last."""
-        sized = {"n_dots", "size_range_mm"}
+        sized = {"n_dots", "size_range_mm", "density_per_cm2"}
         skipped = {*given, *(sized if sized & set(given) else ())}
         kept = {name: value for name, value in self.values.items() if name not in skipped}
         tone, width_mm = kept.pop("tone", tone), kept.pop("width_mm", width_mm)

@@ -130,19 +130,27 @@ class PaintingMachine(RuleBasedStateMachine):
         stroke = Stroke(self.document, brush, PointerSample(*path[0]), self.n_strokes)
         for k, at in enumerate(path[1:]):
             stroke.follow(PointerSample(*at, t=0.1 * (k + 1)))
-        late = late and self.run_size > 0
-        if late:
+        earlier, middle = set(self.by_hand), before
+        if late and self.run_size > 0:
+            self.note_hand(before)  # what the hand did so far, or it could not be told afterwards
+            mine, places = self.by_hand - earlier, self.places(self.by_hand)
             self.merge(self.n_strokes)
+            assert np.array_equal(self.places(self.by_hand), places)
+            middle = self.document.dots.copy()
         if ends == "cancel":
             stroke.cancel()
+            self.by_hand = earlier
         else:
             stroke.commit(PointerSample(*path[-1], t=0.1 * len(path) + 0.2))
+            self.note_hand(middle)
         if kind not in ("fix", "unfix"):
             self.check_fixed(fixed)
-        if ends == "cancel" and not late:
+        if ends == "cancel" and middle is before:
             assert same(self.document.dots, before)
-        elif not late:  # else what the hand did cannot be told from what the worker did
-            self.note_hand(before)
+        elif ends == "cancel":
+            touched = np.isin(before.id, list(mine))
+            rows = self.document.rows(before.id[touched])
+            assert same(self.document.dots.take(rows), before.take(touched))
 
     @rule(corners=st.tuples(AT, AT), what=st.integers(0, 5))
     def work_on_a_selection(self, corners, what):

@@ -70,8 +70,8 @@ class EditingMachine(RuleBasedStateMachine):
         self.most_id = {}
         self.at = 0
         self.before = None
-        self.moved_by_run = False
         self.shown, self.cursor = {}, 0
+        self.merged = False  # whether a result came since the changes were looked at
 
     def teardown(self):
         self.document.history.close()
@@ -141,33 +141,34 @@ class EditingMachine(RuleBasedStateMachine):
         self.states.append(whole(self.document.drawing))
         self.at += 1
 
-    @precondition(lambda self: self.document.in_stroke and not self.document.in_run)
+    @precondition(lambda self: self.document.in_stroke)
     @rule()
     def cancel(self):
         self.document.cancel()
         assert alike(whole(self.document.drawing), self.before)
 
-    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @precondition(lambda self: not self.document.in_stroke)
     @rule()
     def undo(self):
         assert self.document.undo() == (self.at > 0)
         self.at = max(self.at - 1, 0)
         assert alike(whole(self.document.drawing), self.states[self.at])
 
-    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @precondition(lambda self: not self.document.in_stroke)
     @rule()
     def redo(self):
         assert self.document.redo() == (self.at + 1 < len(self.states))
         self.at = min(self.at + 1, len(self.states) - 1)
         assert alike(whole(self.document.drawing), self.states[self.at])
 
-    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @precondition(lambda self: not self.document.in_stroke)
     @rule(seed=st.integers(0, 9), sizes=st.lists(st.integers(0, 9), max_size=4))
     def make(self, seed, sizes):
         """A draft: it stands among the dots as it grows, and is one step."""
         document, rng = self.document, np.random.default_rng(seed)
         others = document.dots.id[document.dots.area != 0].copy()
         document.begin_draft("Stipple", 0, Style(n_dots=seed + 1, pen="quill"))
+        self.merged = True
         n = 0
         for n in sizes:
             document.draft(rng.uniform(0, 1, (n, 2)) * (20, 10), np.full(n, 0.2, np.float32))
@@ -207,7 +208,7 @@ class EditingMachine(RuleBasedStateMachine):
         assert alike(whole(drawing), self.states[first])
         assert edit.then(edit.inverse()).is_empty
 
-    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @precondition(lambda self: not self.document.in_stroke)
     @rule()
     def recover(self):
         """What was told, done again from the start, makes the same drawing with its history."""
@@ -223,7 +224,7 @@ class EditingMachine(RuleBasedStateMachine):
             pass
         assert alike(whole(drawing), self.states[0])
 
-    @precondition(lambda self: not self.document.in_stroke and not self.document.in_run)
+    @precondition(lambda self: not self.document.in_stroke)
     @rule(seed=st.integers(0, 9), strokes=st.integers(0, 2))
     def run(self, seed, strokes):
         """A run with strokes in its midst; all of it undone and done again."""
@@ -235,6 +236,7 @@ class EditingMachine(RuleBasedStateMachine):
         for k in range(strokes + 1):
             result = rng.uniform(0, 1, (len(frozen), 2)) * (20, 10)
             document.merge(result)
+            self.merged = True
             if k < strokes:
                 document.begin("within the run")
                 rows = self.rows(rng.uniform(0, 0.999, 5))
@@ -280,6 +282,8 @@ class EditingMachine(RuleBasedStateMachine):
         """What the GPU was told adds up to what there is."""
         changed = self.document.changes.since(self.cursor)
         self.cursor = changed.cursor
+        assert changed.places <= self.merged
+        self.merged = False
         rows, dots = changed.rows, self.document.dots
         if changed.places and "id" in self.shown and len(dots) == len(self.shown["id"]):
             self.shown["position_mm"] = dots.position_mm.copy()

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import inspect
 import json
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image
 
 import stippler
 from stippler.cli import app
+from stippler.cli import run as main_run
 from stippler.drawing.parameter import Kind, Parameter
 from stippler.drawing.style import MAX_DOTS, PARAMETERS, Style
+from stippler.drawing.style_presets import preset, preset_keys, presets
 from stippler.errors import ParameterError
 
 
@@ -89,3 +94,35 @@ def test_python_and_the_command_line_take_just_these() -> None:
     for command in ("edit", "render", "stats"):
         options = {flag for one in group.commands[command].params for flag in one.opts}
         assert {about.option for about in PARAMETERS} <= options
+
+
+@pytest.mark.parametrize("key", preset_keys())
+def test_every_style_that_comes_with_the_program_draws_and_has_a_swatch(key: str) -> None:
+    one = presets()[key]
+    assert one.style.name
+    assert one.about.endswith(".")
+    with Image.open(one.swatch) as swatch:
+        assert swatch.mode == "L"
+        assert 0.02 < (np.asarray(swatch) < 128).mean() < 0.98
+    grey = np.full((30, 40), 0.4)
+    drawing = stippler.stipple(grey, 120, 20.0, tone="linear", style=key, iterations=2)
+    assert len(drawing.dots) == pytest.approx(120, abs=6)
+    assert drawing.style_of(0).spacing == one.style.spacing
+    assert drawing.style_of(0).density_per_cm2 is None  # the number that was given counts
+
+
+def test_there_are_at_least_twelve_styles() -> None:
+    assert len(presets()) >= 12
+    with pytest.raises(ParameterError, match="'glass' is unknown; one of black-ground, "):
+        preset("glass")
+
+
+def test_a_style_on_the_command_line_counts_less_than_what_stands_beside_it(tmp_path: Path) -> None:
+    Image.fromarray(np.full((30, 40), 120, np.uint8)).save(tmp_path / "grey.png")
+    out = tmp_path / "out.stipple"
+    args = ["render", str(tmp_path / "grey.png"), "-o", str(out), "--style", "fur", "--width", "20"]
+    assert main_run([*args, "--dots", "90", "--jitter", "5"]) == 0
+    style = stippler.open(out).style_of(0)
+    assert (style.name, style.n_dots, style.jitter) == ("Fur", 90, 5.0)
+    assert style.elongation == preset("fur").elongation
+    assert main_run([*args, "--style", "glass"]) == 2

@@ -177,9 +177,5 @@ def test_too_few_points_are_refused():
         dot_shape.bezier_outlines(one(), 2)
 
 
-def test_one_largest_elongation_for_all():
-    assert dot_shape.MAX_ELONGATION == MAX_ELONGATION
-
-
 def test_no_dots_have_no_outlines():
     assert dot_shape.outlines(Dots.none(), 16).shape == (0, 16, 2)

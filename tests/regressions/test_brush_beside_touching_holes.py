@@ -23,9 +23,11 @@ def test_cells_anywhere(outline):
     xy = np.random.default_rng(0).random((1500, 2)) * [100, 80]
     xy = xy[shapely.contains_xy(outline, *xy.T)]
     drawing.dots = Dots.round(xy, 0.3)
-    document = Document(drawing)
+    document, n_places = Document(drawing), 0
     for x in range(2, 100, 8):
         for y in range(2, 80, 8):
             rows = np.flatnonzero(np.hypot(*(xy - (x, y)).T) < 6.0)
             if len(rows):
+                n_places += 1
                 assert (cells_of(document, rows).area_mm2 > 0.0).all()
+    assert n_places > 80

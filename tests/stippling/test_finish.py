@@ -69,9 +69,10 @@ def test_the_ink_along_the_edge_meets_the_tone():
 
     def error(dots):
         *_, (_, radii) = solve_radii(dots, raster.darkness, raster.rule)
-        ink = draw_ink(dots, radii, raster.darkness.shape, zoom=8)
-        spacing = 400 / np.sqrt(3000)
-        off = [gaussian_filter1d(ink[k] - raster.darkness[k], 2 * spacing) for k in (0, -1)]
+        ink = draw_ink(2 * dots, 2 * radii, (800, 800), zoom=4)  # in rows of half a pixel
+        spacing = 800 / np.sqrt(3000)
+        dark = np.repeat(raster.darkness[0], 2)
+        off = [gaussian_filter1d(ink[k] - dark, 2 * spacing) for k in (0, -1)]
         return float(np.sqrt(np.mean(np.square(off))))
 
     before, dots = error(points), points

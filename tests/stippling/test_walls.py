@@ -111,3 +111,11 @@ def test_degenerate_cells_are_shapelys(first):
         if len(xy):
             cells = Tessellation.of(xy, shape)
             assert wrong_cells(shape, xy, cells.area, cells.centroid) == [], seed
+
+
+@pytest.mark.parametrize("seed", [5064412, 5095832])
+def test_cells_go_through_necks_narrower_than_the_reference_sees(seed):
+    shape, xy = shape_and_dots(seed)
+    cells = Tessellation.of(xy, shape)
+    assert wrong_cells(shape, xy, cells.area, cells.centroid) == []
+    assert wrong_cells(shape, xy, 1.001 * cells.area, cells.centroid) != []

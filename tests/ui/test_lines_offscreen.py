@@ -109,7 +109,7 @@ def test_the_panel_changes_lines_and_lays_rows(lines):
     n = len(document(lines).dots)
     editor.lines.row = editor.lines.row.__class__(by_number=True, n_dots=31, radius_mm=0.4)
     host.settle()
-    host.click("Lay the row")
+    editor.commands["line.row"].run()
     dots = document(lines).dots
     rows = np.flatnonzero((dots.constraint == ON_CURVE) & (dots.curve == k))
     assert len(dots) == n + 31 == n + len(rows)
@@ -170,3 +170,29 @@ def test_nodes_of_lines_are_dragged_and_their_dots_go_along(lines):
     host.key("z", ctrl=True)
     host.key("z", ctrl=True)
     assert np.ptp(table(lines)[k].path.points_mm[:, 1]) < 1
+
+
+def test_relaxing_spreads_dots_on_lines_and_leaves_them_there(lines):
+    host, session = lines.host, lines.app.session
+    host.click((500, 300))
+    host.click((800, 300))
+    host.key("enter")
+    (k,) = table(lines)
+    lines.app.editor.lines.row = lines.app.editor.lines.row.__class__(by_number=True, n_dots=12)
+    lines.app.editor.commands["line.row"].run()
+    rows = np.flatnonzero(document(lines).dots.constraint == ON_CURVE)
+    document(lines).begin("Crowd")
+    document(lines).change("parameter", rows, np.linspace(1.0, 4.0, 12))
+    document(lines).commit()
+    lines.app.editor.commands["work.relax"].run()
+    host.until(lambda: not session.busy, "relaxing")
+    dots = document(lines).dots
+    gaps = np.diff(np.sort(dots.parameter[rows]))
+    assert np.ptp(gaps) < 0.01 * gaps.mean()
+    assert np.allclose(dots.position_mm[rows], table(lines)[k].at(dots.parameter[rows]), atol=1e-9)
+    labels = [step.label for step in document(lines).history.steps]
+    assert labels[-2:] == ["Spread dots on lines", "Relax all"]
+    lines.app.editor.commands["work.relax"].run()
+    host.until(lambda: not session.busy, "relaxing")
+    labels = [step.label for step in document(lines).history.steps]
+    assert labels.count("Spread dots on lines") == 1  # they are even already

@@ -135,6 +135,20 @@ def test_timed_brushes_go_on_while_the_pointer_rests(hands):
     assert 95 <= len(hands.document.dots) - n <= 105
 
 
+@pytest.mark.parametrize("kind", ["spray", "thin"])
+def test_a_timed_brush_does_not_make_up_for_a_stall(hands, kind):
+    """Thin took 305 dots in one frame once the machine came back after a minute."""
+    hands.use(kind, values={"per_s": 200.0})
+    hands.at(Pressed, (20, 15))
+    n, t = len(hands.document.dots), hands.t
+    hands.box.rest(t + 0.05)
+    before = abs(len(hands.document.dots) - n)
+    hands.box.rest(t + 60.0)
+    at_once = abs(len(hands.document.dots) - n) - before
+    assert before > 0
+    assert at_once <= 21  # a tenth of a second's
+
+
 def test_losing_the_window_ends_the_stroke_and_keeps_it(hands):
     hands.use("erase")
     hands.at(Pressed, (20, 15))

@@ -31,9 +31,11 @@ from stippler.editor.tools.knife_tool import KnifeTool
 from stippler.editor.tools.line_choice import ChosenLines
 from stippler.editor.tools.line_tool import LineTool
 from stippler.editor.tools.node_tool import NodeTool
+from stippler.editor.tools.pattern_tool import PatternTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
 from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Sight, Tool, ToolState
+from stippler.editor.tools.warp_tool import WarpTool
 from stippler.errors import StipplerError
 from stippler.settings import read_document, write_document
 
@@ -50,7 +52,7 @@ def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
     """Make every tool, in the order of the strip; a new one is a line here."""
     brushes = (BrushTool(kind, shelf) for kind in KINDS)
     areas = (AreaTool(), KnifeTool(), BucketTool(), NodeTool())
-    return (*brushes, SelectTool(), *areas, LineTool())
+    return (*brushes, SelectTool(), *areas, LineTool(), PatternTool(), WarpTool())
 
 
 class Toolbox:

@@ -187,11 +187,6 @@ class Keeper:
         return self._problem or next(filter(None, told), None)
 
     @property
-    def is_begun(self) -> bool:
-        """Whether anything is kept."""
-        return bool(self._journals)
-
-    @property
     def is_on_disk(self) -> bool:
         """Whether the drawing that `begin` was given last is kept."""
         done = self._thread is not None and not self._thread.is_alive()

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.cells.tables import F8
-from stippler.kernels.machine.jit import inner, kernel
+from stippler.kernels.machine.jit import inline, inner, kernel
 from stippler.kernels.machine.simd import data_of, get
 
 FIRST, ROWS, COLUMNS, TOP, LEFT, TABLE = range(6)
@@ -24,6 +24,12 @@ FIRST, ROWS, COLUMNS, TOP, LEFT, TABLE = range(6)
 
 LONG = 32
 """Columns from which on an edge is looked at row by row, as much of it may lie on white."""
+
+
+@inline
+def _mirrored(k: int, n: int) -> int:
+    k = -1 - k if k < 0 else k
+    return k if k < n else 2 * n - 1 - k
 
 
 @kernel
@@ -42,7 +48,9 @@ def sum_rows(
     row_start : (v + 1,) int64
         Windows' rows are counted one after the other: where each one's begin.
     window : (v, 6) int64
+        What of them lies beyond `values` repeats these, mirrored.
     """
+    height, width = values.shape
     v = 0
     for r in range(start, stop):
         while row_start[v + 1] <= r:
@@ -50,13 +58,14 @@ def sum_rows(
         columns, left, table = window[v, COLUMNS], window[v, LEFT], window[v, TABLE]
         row = r - row_start[v]
         at = 2 * (window[v, FIRST] + row * (columns + 1))
-        row += window[v, TOP]
+        row = _mirrored(row + window[v, TOP], height)
         m = q = 0.0
         for c in range(columns):
             sums[at], sums[at + 1] = m, q
-            f = np.float64(values[row, left + c])
+            column = _mirrored(left + c, width)
+            f = np.float64(values[row, column])
             if len(tables) > 0:
-                f = np.float64(tables[table, int(values[row, left + c])])
+                f = np.float64(tables[table, int(values[row, column])])
             m += f
             q += f * (c + 0.5)
             at += 2

@@ -21,7 +21,7 @@ import numpy as np
 from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field
 from stippler.kernels.cells.kept_borders import move_by_lines
 from stippler.kernels.cells.relaxation import INNER, KEPT
-from stippler.kernels.cells.spacing import ask, blend, rules_in_lanes
+from stippler.kernels.cells.spacing import ask, blend, rules_of_star
 from stippler.kernels.cells.tables import (
     F8,
     I4,
@@ -108,7 +108,7 @@ def verify_stars(
             ask(spacing, i, c, area, mass)
             load_lanes(N, stars.around, i)
             put(N, m, get(N, 0))  # corner k lies between the dots k and k + 1 of a star
-            ru, rv = rules_in_lanes(U, V, N, ZERO + 1, m, i, x, y, dots, spacing)
+            ru, rv = rules_of_star(U, V, N, A, m, i, dots, spacing)
             if mass > 0.0:
                 du, dv = blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
         if dots.fixed[i]:

@@ -18,27 +18,37 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from stippler.kernels.cells.spacing_lanes import (
+    AT_ONCE,
+    BASE,
+    CAP,
+    FAR,
+    FARTHER,
+    GAIN,
+    HOLE,
+    LEAST,
+    LEVEL,
+    LOW,
+    MASS,
+    NARROW,
+    NEAR,
+    NEIGHBOUR,
+    PULL,
+    RADIUS,
+    SLOPE,
+    WIDE,
+    WIDEST,
+    rules_of_sides,
+)
 from stippler.kernels.cells.tables import F8, Dots, Spacing
-from stippler.kernels.machine.jit import inline, inner
-from stippler.kernels.machine.simd import get
-
-NEAR, BASE, SLOPE, CAP, HOLE, NARROW, LEVEL, PULL, GAIN, LOW, LEAST = range(11)
-"""Places in `Spacing.rule`."""
+from stippler.kernels.machine.jit import ZERO, inline, inner
+from stippler.kernels.machine.simd import get, put
 
 FIRST, ROWS, SCALE, UNIT = range(4)
 """Columns of `Spacing.of_part`."""
 
-WIDE, WIDEST = 0.85, 1.05
-"""Diameters of dots, in hexagonal spacings, between which holes get narrower."""
-
-MASS, NEIGHBOUR, RADIUS = 0, 1, 2
-"""Columns of `Spacing.wants` and `Spacing.found`."""
-
 HEXAGONAL = 2.0 / math.sqrt(3.0)
 """Squared neighbour distance of the hexagonal grid with one dot a unit of area."""
-
-_FAR = 1e-30
-_FARTHER = 1.6  # a neighbour's own spacing counts for no more than so much of a dot's
 
 
 @inline
@@ -51,7 +61,7 @@ def ask(spacing: Spacing, i: int, c: int, area: float, mass: float) -> None:
     first, rows = int(part[c, FIRST]), part[c, ROWS]
     per_area, radius = table[first, 0], table[first, 1]
     if rows > 1.0:
-        at = min(max(mass / max(area, _FAR) * part[c, SCALE], 0.0), rows - 1.0)
+        at = min(max(mass / max(area, FAR) * part[c, SCALE], 0.0), rows - 1.0)
         k = int(min(at, rows - 2.0))
         t = at - k
         k += first
@@ -63,7 +73,7 @@ def ask(spacing: Spacing, i: int, c: int, area: float, mass: float) -> None:
         radius = own
     per_area *= part[c, UNIT]
     spacing.found[i, MASS] = area * per_area
-    spacing.found[i, NEIGHBOUR] = math.sqrt(HEXAGONAL / max(per_area, _FAR))
+    spacing.found[i, NEIGHBOUR] = math.sqrt(HEXAGONAL / max(per_area, FAR))
     spacing.found[i, RADIUS] = radius
 
 
@@ -99,7 +109,7 @@ def rules_in_lanes(
     """
     rule, wants = spacing.rule, spacing.wants
     own, h, radius = wants[i, MASS], wants[i, NEIGHBOUR], wants[i, RADIUS]
-    most = _FARTHER * h
+    most = FARTHER * h
     du = dv = 0.0
     j = get(N, first + m - 1)
     before = min(wants[j, NEIGHBOUR], most) if j >= 0 else h
@@ -113,15 +123,15 @@ def rules_in_lanes(
         if j >= 0:
             there = min(wants[j, NEIGHBOUR], most)
             a, b = dots.x[j] - x, dots.y[j] - y
-            d2 = max(a * a + b * b, _FAR)
+            d2 = max(a * a + b * b, FAR)
             push = _push(rule, d2, 0.5 * (h + there), radius + wants[j, RADIUS])
             level = rule[LEVEL] * (wants[j, MASS] - own) * (a * ev - b * eu) / d2
             du += level * 0.5 * (u + u1) - push * a
             dv += level * 0.5 * (v + v1) - push * b
         else:
-            t = 2.0 * (u * ev - v * eu) / max(eu * eu + ev * ev, _FAR)
+            t = 2.0 * (u * ev - v * eu) / max(eu * eu + ev * ev, FAR)
             a, b = t * ev, -t * eu
-            push = _push(rule, max(a * a + b * b, _FAR), h, 2.0 * radius)
+            push = _push(rule, max(a * a + b * b, FAR), h, 2.0 * radius)
             du -= push * a
             dv -= push * b
         t = _pull(rule, u, v, (h + before + there) * (1.0 / 3.0), radius)
@@ -129,6 +139,25 @@ def rules_in_lanes(
         dv += t * v
         before, u, v = there, u1, v1
     return du, dv
+
+
+@inline
+def rules_of_star(
+    U: Any, V: Any, N: Any, A: Any, m: int, i: int, dots: Dots, spacing: Spacing
+) -> tuple[float, float]:
+    """Return what `rules_in_lanes` does for a dot that dots surround on all sides.
+
+    The dot beyond side k is ``N[k + 1]``; A is scratch for two numbers.
+    """
+    mass, h, radius = spacing.wants[i, MASS], spacing.wants[i, NEIGHBOUR], spacing.wants[i, RADIUS]
+    put(A, 0, 0.0)
+    put(A, 1, 0.0)
+    for k in range(0, m, AT_ONCE):
+        rules_of_sides(
+            U, V, N, ZERO + k, ZERO + m, dots.x[i], dots.y[i], mass, h, radius, dots.x, dots.y,
+            spacing.wants, spacing.rule, A,
+        )  # fmt: skip
+    return get(A, 0), get(A, 1)
 
 
 @inner
@@ -148,7 +177,7 @@ def rules_at_border(
         u, v, u1, v1 = out[s, 0], out[s, 1], out[s, 2], out[s, 3]
         eu, ev = u1 - u, v1 - v
         if out[s, 4] < 0.0:
-            t = -(u * eu + v * ev) / max(eu * eu + ev * ev, _FAR)
+            t = -(u * eu + v * ev) / max(eu * eu + ev * ev, FAR)
             t = min(max(t, 0.0), 1.0)
             a, b = u + t * eu, v + t * ev
             if a * a + b * b < near2:
@@ -157,9 +186,9 @@ def rules_at_border(
                 far2, far_u, far_v = u * u + v * v, u, v
             continue
         j = int(out[s, 4])
-        mean = 0.5 * (h + min(wants[j, NEIGHBOUR], _FARTHER * h))
+        mean = 0.5 * (h + min(wants[j, NEIGHBOUR], FARTHER * h))
         a, b = dots.x[j] - x, dots.y[j] - y
-        d2 = max(a * a + b * b, _FAR)
+        d2 = max(a * a + b * b, FAR)
         push = _push(rule, d2, mean, radius + wants[j, RADIUS])
         level = rule[LEVEL] * (wants[j, MASS] - own) * (a * ev - b * eu) / d2
         t0, t1 = _pull(rule, u, v, mean, radius), _pull(rule, u1, v1, mean, radius)
@@ -193,5 +222,5 @@ def blend(
         dv *= shorter
     au, av = ink_u - mid_u, ink_v - mid_v
     off = math.sqrt(au * au + av * av)
-    w = min(max(rule[GAIN] * off / max(s, _FAR) - rule[LOW], rule[LEAST]), 1.0)
+    w = min(max(rule[GAIN] * off / max(s, FAR) - rule[LOW], rule[LEAST]), 1.0)
     return (1.0 - w) * du + w * ink_u, (1.0 - w) * dv + w * ink_v

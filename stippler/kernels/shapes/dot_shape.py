@@ -54,6 +54,19 @@ def hash32(x):
     return np.uint32(x ^ (x >> np.uint32(16)))
 
 
+@kernel
+def _hash_units(seed, salt, out):
+    for i in range(len(seed)):
+        out[i] = (hash32(seed[i] ^ np.uint32(salt)) >> np.uint32(8)) / 16777216.0
+
+
+def hash_unit(seed: NDArray[np.uint32], salt: int) -> NDArray[np.float64]:
+    """Return a number in [0, 1) for each seed; other salts give other numbers."""
+    out = np.empty(len(seed))
+    _hash_units(seed, salt, out)
+    return out
+
+
 @inline
 def fill_coefficients(seed, roughness, c):
     """Fill c with x_2, y_2, x_3, ... y_9 for a dot's seed and roughness."""

@@ -8,6 +8,7 @@ from stippler.ui.actions.files import edit_commands, file_commands, help_command
 from stippler.ui.actions.lines import line_commands
 from stippler.ui.actions.nodes import node_commands
 from stippler.ui.actions.parts import Parts
+from stippler.ui.actions.patterns import pattern_commands
 from stippler.ui.actions.tools import selection_commands, tool_commands
 from stippler.ui.actions.views import panel_commands, view_commands
 
@@ -22,6 +23,7 @@ def commands_for(parts: Parts) -> Commands:
         selection_commands,
         work_commands,
         line_commands,
+        pattern_commands,
         area_commands,
         node_commands,
         tool_commands,

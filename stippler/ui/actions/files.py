@@ -17,7 +17,7 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     popups, filing, session = parts.popups, parts.popups.filing, parts.session
 
     def has_dots() -> bool:
-        return session.n_dots > 0
+        return session.n_dots > 0 or bool(session.drawing and session.drawing.lines)
 
     def is_open() -> bool:
         return session.document is not None
@@ -84,6 +84,9 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),),
                   can=lambda: session.paintable and session.n_dots > 0)  # fmt: skip
     yield Command("work.reset", "Values as at first", reset)
+    yield Command("work.scale", "Scale the drawing", parts.popups.scale.ask,
+                  can=lambda: session.paintable,
+                  tip="to another size or number of dots, its tone kept.")  # fmt: skip
     yield from _print_commands(parts)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from stippler.editor.area_acts import AreaActs
 from stippler.editor.lines import Lines
 from stippler.editor.painting import Painting
+from stippler.editor.patterns import Patterns
 from stippler.editor.pointer import Pointer
 from stippler.editor.selecting import Selecting
 from stippler.editor.session import Session
@@ -38,6 +39,7 @@ class Parts:
     painting: Painting
     selecting: Selecting
     lines: Lines
+    patterns: Patterns
     area_acts: AreaActs
     pointer: Pointer
     view: View

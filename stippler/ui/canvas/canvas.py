@@ -219,6 +219,7 @@ def _frame(camera: Camera, size_px: Size, look: Look, session: Session) -> Frame
         ink=theme.ink,
         marks=(FIXED, SELECTED) if look.marks_shown else None,
         dots=look.dots_shown,
+        patterns=look.patterns_shown,
         opacity=opacity,
         adjustment=session.adjustment if opacity else NEUTRAL,
     )

@@ -117,6 +117,18 @@ class Dialogs:
         else:
             self._own = _Own(title, "Open", f"{folder}/", endings, take)
 
+    def ask_open(
+        self, title: str, folder: Path, endings: tuple[str, ...], take: Callable[[Path], None]
+    ) -> None:
+        """Ask for a file of some kinds to read."""
+        if self.is_open:
+            return
+        if self._use_native:
+            patterns = " ".join(f"*{ending}" for ending in endings)
+            self._native = _Native(native.open_file(title, str(folder), [title, patterns]), take)
+        else:
+            self._own = _Own(title, "Open", f"{folder}/", endings, take)
+
     def ask_place(self, path: Path, endings: tuple[str, ...], take: Callable[[Path], None]) -> None:
         """Ask where to write a file, by its folder and name; whether to replace is not asked."""
         if self.is_open:

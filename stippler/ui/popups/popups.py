@@ -20,6 +20,7 @@ from stippler.ui.popups.palette import Palette
 from stippler.ui.popups.preferences_window import PreferencesWindow
 from stippler.ui.popups.recovery import RecoveryWindow
 from stippler.ui.popups.save_failed import SaveFailed
+from stippler.ui.popups.scale import ScaleDrawing
 from stippler.ui.popups.shelf import Shelf
 from stippler.ui.popups.shortcut_sheet import Sheet
 from stippler.ui.preferences import Preferences
@@ -62,6 +63,7 @@ class Popups:
         )  # fmt: skip
         self.save_failed = SaveFailed(session, lambda is_copy: self.filing.save_as(is_copy=is_copy))
         self.new_page = NewPage(self.filing.begin)
+        self.scale = ScaleDrawing(session)
         self.palette = Palette(kept, self.filing.recent)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
@@ -76,6 +78,7 @@ class Popups:
             or self.exporting.is_open
             or self.filing.guard.is_open
             or self.new_page.is_open
+            or self.scale.is_open
             or self.recovery.is_open
             or self.recent.is_open
             or self.earlier.is_open
@@ -101,6 +104,7 @@ class Popups:
         guarded("the dialog", lambda: self.dialogs.draw(widgets))
         guarded("the export", lambda: self.exporting.draw(widgets))
         guarded("the new page", lambda: self.new_page.draw(widgets))
+        guarded("scaling", lambda: self.scale.draw(widgets))
         guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the recent files", lambda: self.recent.draw(widgets))
         guarded("the earlier versions", lambda: self.earlier.draw(widgets))

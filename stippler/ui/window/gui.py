@@ -136,11 +136,6 @@ class Gui:
         chord = event.mods.ctrl or event.mods.alt
         return has_focus and event.key in _NAVIGATES and not chord
 
-    @property
-    def has_field(self) -> bool:
-        """Whether a control is held or a field is typed into."""
-        return self.wants_keys or bool(_context().active_id)
-
     def frame(self, draw_ui: Callable[[], None]) -> Exception | None:
         """Let `draw_ui` build one frame; return what it raised, after closing the frame."""
         imgui.backends.opengl3_new_frame()

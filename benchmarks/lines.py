@@ -1,0 +1,140 @@
+"""Figures of lines, patterns, deformations and scale."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from benchmarks.areas import best_ms, curves
+from benchmarks.figures import Figure
+from benchmarks.quality import SPHERE, read_darkness
+from benchmarks.scorer import measure
+from stippler.drawing.deformation import Cage, Deformation
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.line import DISTANCE, Line
+from stippler.drawing.pattern import Pattern
+from stippler.drawing.planar.path import Path
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from stippler.stippling.initial_points import random_in
+from stippler.stippling.lines import adhere, adhering, keeping_distance, spread
+from stippler.stippling.part_of_area import part_for_dots
+from stippler.stippling.patterns import builtin
+from stippler.stippling.pipeline import run
+from stippler.stippling.relax import Relaxation
+from stippler.stippling.scale import Scaling, scaled_drawing
+from stippler.stippling.task import Task
+
+PAGE = (200.0, 150.0)
+
+
+def figures(*, quick: bool = False) -> list[Figure]:
+    """Measure all; the best of several, since other work disturbs."""
+    repeats = 5 if quick else 30
+    return [
+        *_bending(repeats),
+        *_lines(repeats),
+        _relaxing(3 if quick else 8),
+        *_detail(quick=quick),
+    ]
+
+
+def _bending(repeats: int) -> list[Figure]:
+    rng = np.random.default_rng(1)
+    bent = Deformation(cage=Cage.over((0.0, 0.0, *PAGE)).moved({5: (60.0, 45.0)}))
+    pattern = Pattern(1, builtin("hexagons"), 8, 8, bent)
+    dots = rng.random((200_000, 2)) * PAGE
+    return [
+        Figure("cage over 5,120 polygons", best_ms(pattern.rings_mm, repeats), "ms", 16),
+        Figure("cage over 200k dots", best_ms(lambda: bent.apply(dots), repeats), "ms", 8),
+    ]
+
+
+def _lines(repeats: int) -> list[Figure]:
+    rng = np.random.default_rng(1)
+    lines, loose = adhering(curves(500, rng)), rng.random((20_000, 2)) * 100
+    apart = [
+        Line(one.name, one.path, (0.4, 0.4), meeting=DISTANCE, distance_mm=0.5)
+        for one in curves(20, rng)
+    ]
+    moved, held = keeping_distance(apart).keep_distance(loose)
+    axes = shapely.union_all([shapely.linestrings(one.path.points_mm) for one in apart])
+    nearest = shapely.distance(axes, shapely.points(moved[held])).min()
+    t = np.linspace(0.0, 2 * np.pi, 500)[:-1]
+    ring = Path.polyline(50 + 20 * np.column_stack([np.cos(t), np.sin(t)]), closed=True)
+    uneven = max(
+        _unevenness(one, rng)
+        for one in (Line("straight", Path.polyline([(10, 10), (90, 10)])), Line("ring", ring),
+                    *apart[:3])
+    )  # fmt: skip
+    return [
+        Figure("20k dots adhere to 500 curves", best_ms(lambda: adhere(lines, loose), repeats),
+               "ms", 10),
+        Figure("nearer to a line than asked, at worst", max(0.7 - float(nearest), 0.0), "mm", 1e-6),
+        Figure("dots that find no place between lines", float((~held).mean()), "share"),
+        Figure("spacing along a line, largest over mean", uneven, "", 0.01,
+               note="straight, closed, curved"),
+    ]  # fmt: skip
+
+
+def _unevenness(line: Line, rng: np.random.Generator) -> float:
+    along = np.sort(spread(line, np.sort(rng.random(80)) * line.length_mm))
+    gaps = np.diff(along)
+    return float(np.ptp(gaps) / gaps.mean())
+
+
+def _relaxing(steps: int) -> Figure:
+    """Relax the same dots in 200 areas' 2,000 polygons and in one square, step by step in turns."""
+    n, side = 50_000, 100.0
+    drawing = Drawing.blank(Page(side, side))
+    rng = np.random.default_rng(4)
+    seeds = shapely.multipoints(rng.random((200, 2)) * side)
+    areas = shapely.voronoi_polygons(seeds, extend_to=shapely.box(0, 0, side, side))
+    whole = shapely.box(0, 0, side, side)
+    cells: list[shapely.Polygon] = []
+    hexagons = Pattern.over(0, builtin("hexagons"), (0, 0, side, side), side / 3.6)
+    for area in areas.geoms:
+        drawing.patterns = {0: hexagons}
+        cells += shapely.get_parts(part_for_dots(drawing, 0, area.intersection(whole))).tolist()
+    cells = [cell for cell in cells if cell.area > 0.05]
+    total = sum(cell.area for cell in cells)
+    counts = [max(1, round(n * cell.area / total)) for cell in cells]
+    dots = np.concatenate([random_in(cell, k, 1) for cell, k in zip(cells, counts, strict=True)])
+    owner = np.repeat(np.arange(len(cells)), counts)
+    pattern = Relaxation(dots, cells, compartment_of_dot=owner)
+    square = Relaxation(rng.random((len(dots), 2)) * side, whole)
+    ratios = [best_ms(pattern.step, 1) / best_ms(square.step, 1) for _ in range(steps)]
+    return Figure("relaxing 50k dots in pattern polygons, over a square", float(np.median(ratios)),
+                  "x", 1.5, note=f"{len(cells):,} polygons of 200 areas")  # fmt: skip
+
+
+def _detail(*, quick: bool) -> list[Figure]:
+    """Take a drawing of the sphere to a quarter of its dots, and stipple it with as many anew."""
+    dark = read_darkness(SPHERE)
+    h, w = dark.shape
+    n = 12_000 if quick else 60_000
+    reference = Reference(dark.astype(np.float32), float(w))
+
+    def drawn(n_dots: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        *_, made = run(Task(Style(n_dots=n_dots), reference), snapshots=False)
+        return np.array(made.position_mm), made.radius_mm.astype(np.float64)
+
+    drawing = Drawing.blank(Page(float(w), float(h)), Style(n_dots=n))
+    drawing.dots, drawing.reference = Dots.round(*drawn(n)), reference
+    scaling = Scaling(n_dots=n // 4)
+    seconds = best_ms(lambda: scaled_drawing(drawing, scaling), 2) / 1e3
+    fewer = scaled_drawing(drawing, scaling).dots
+    ours = measure(fewer.position_mm, fewer.radius_mm.astype(np.float64), dark)
+    anew = measure(*drawn(n // 4), dark)
+    name = f"level of detail, {n // 1000}k to {n // 4000}k dots"
+    return [
+        Figure(name, seconds, "s", 1.0),
+        Figure(f"{name}: tone_rmse over stippling anew", ours["tone_rmse"] / anew["tone_rmse"],
+               "x", 1.0, note=f"{ours['tone_rmse']:.4f} and {anew['tone_rmse']:.4f}"),
+        Figure(f"{name}: min_rel", ours["min_rel"], "", 0.45, higher_is_better=True,
+               note=f"anew {anew['min_rel']:.2f}"),
+        Figure(f"{name}: gain off 1", abs(ours["tone_gain"] - 1.0), "",
+               note=f"anew {abs(anew['tone_gain'] - 1.0):.4f}"),
+    ]  # fmt: skip

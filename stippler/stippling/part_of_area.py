@@ -1,0 +1,87 @@
+"""Where an area's dots may lie: what it owns, cut by its pattern and by lines."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from shapely.geometry import MultiPolygon, Polygon
+
+from stippler.drawing.drawing import Drawing
+from stippler.drawing.line import DISTANCE, Line
+from stippler.drawing.pattern import Pattern
+from stippler.stippling.patterns import cells_of
+
+Shape: TypeAlias = Polygon | MultiPolygon
+
+_QUARTER = 16  # edges of a quarter turn
+_OUT = 1.0 / math.cos(math.pi / (4 * _QUARTER))
+"""A polygon around a circle, not in it: no dot comes nearer than it may."""
+
+_APART_MM = 2e-5
+"""Polygons of a pattern that share an edge are parted by this; each bounds its own dots."""
+
+_LEAST_MM2 = 1e-4
+
+FEW = 20
+"""Dots to a polygon: fewer are spaced by Lloyd's method; they have no room for rows."""
+
+
+def pattern_of(drawing: Drawing, area: int) -> tuple[int, Pattern] | None:
+    """Return the pattern of an area, with its id: the last one laid over it."""
+    found = [(k, p) for k, p in drawing.patterns.items() if getattr(p, "area", None) == area]
+    return found[-1] if found else None  # type: ignore[return-value]
+
+
+def part_for_dots(drawing: Drawing, area: int, part: Shape) -> Shape:
+    """Return where the dots of an area may lie; each polygon of it is a compartment.
+
+    Parameters
+    ----------
+    part : Polygon or MultiPolygon
+        What the area owns. It is returned as it is where nothing cuts it.
+
+    Raises
+    ------
+    GeometryError
+        If the area's pattern does not meet it.
+    """
+    shape = part
+    if (laid := pattern_of(drawing, area)) is not None:
+        cells = cells_of(part, laid[1]).compartments
+        shape = _joined(shapely.buffer(cells, -_APART_MM, join_style="mitre"))
+    zones = [zone_of(line) for line in _keeping_off(drawing) if _may_meet(line, shape)]
+    if zones:
+        shape = _joined([shapely.difference(shape, shapely.union_all(zones))])
+    return shape
+
+
+def zone_of(line: Line) -> Shape:
+    """Return what no dot may lie in: all within a line's distance of its edge, or a little more."""
+    reach = (np.array(line.width_mm) / 2 + line.distance_mm) * _OUT
+    if reach[0] == reach[1]:
+        axis = shapely.linestrings(line.path.points_mm)
+        return shapely.buffer(axis, float(reach[0]), quad_segs=_QUARTER)
+    wide = (float(2 * reach[0]), float(2 * reach[1]))
+    return Line(line.name, line.path, wide).outline()
+
+
+def _keeping_off(drawing: Drawing) -> list[Line]:
+    lines = [line for line in drawing.lines.values() if isinstance(line, Line)]
+    return [line for line in lines if line.meeting == DISTANCE and not line.hidden]
+
+
+def _may_meet(line: Line, shape: Shape) -> bool:
+    x0, y0, x1, y1 = shape.bounds
+    far = max(line.width_mm) / 2 + line.distance_mm + 1.0
+    low, high = line.path.points_mm.min(axis=0) - far, line.path.points_mm.max(axis=0) + far
+    return bool((low <= (x1, y1)).all() and (high >= (x0, y0)).all())
+
+
+def _joined(shapes: object) -> Shape:
+    """Return all polygons of some shapes as one, without what has no extent."""
+    parts = shapely.get_parts(shapes)
+    parts = parts[(shapely.get_type_id(parts) == 3) & (shapely.area(parts) > _LEAST_MM2)]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts.tolist())

@@ -1,0 +1,67 @@
+"""The dialog that scales a drawing: its size, its number of dots, and how small they may be."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from stippler.editor.scaling import scale
+from stippler.editor.session import Session
+from stippler.ui.widgets import Widgets
+
+_TITLE = "Scale the drawing"
+
+
+class ScaleDrawing:
+    """Asks how, and begins; the drawing can be had back by undoing."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._wanted = False
+        self.is_open = False
+        self.percent, self.n_dots, self.least_mm = 50.0, 0, 0.1
+
+    def ask(self) -> None:
+        """Open the dialog in the next frame."""
+        self._wanted = True
+
+    def draw(self, widgets: Widgets) -> None:
+        """Draw the dialog, if it is open."""
+        if self._wanted:
+            imgui.open_popup(_TITLE)
+            self._wanted = False
+        center = imgui.get_main_viewport().get_center()
+        imgui.set_next_window_pos(center, imgui.Cond_.appearing, (0.5, 0.5))
+        imgui.set_next_window_size((340.0 * widgets.scale, 0.0))
+        self.is_open = imgui.begin_popup_modal(_TITLE, None, imgui.WindowFlags_.no_resize)[0]
+        if self.is_open:
+            self._draw_fields(widgets)
+            self._draw_verbs(widgets)
+            imgui.end_popup()
+
+    def _draw_fields(self, widgets: Widgets) -> None:
+        widgets.caption(
+            "Dots go or come, and what is near them relaxes; tone, areas, lines, fixed dots stay."
+        )
+        tip = "Of all lengths; 100 keeps the size."
+        self.percent = widgets.length("New size", self.percent, tip, "%")
+        tip = "No dot has a smaller radius afterwards; 0 lets sizes shrink."
+        self.least_mm = max(widgets.length("Least dot", self.least_mm, tip), 0.0)
+        tip = "How many dots there are afterwards; 0: as many as the least radius lets be."
+        self.n_dots = max(widgets.number("Number", self.n_dots, tip), 0)
+        drawing = self._session.drawing
+        if drawing is not None:
+            f = self.percent / 100
+            page = drawing.page
+            widgets.caption(f"{page.width_mm * f:.4g} × {page.height_mm * f:.4g} mm on paper")
+
+    def _draw_verbs(self, widgets: Widgets) -> None:
+        width = (imgui.get_content_region_avail().x - widgets.gap) / 2
+        go = widgets.button("Scale", "One step to undo.", width=width, primary=True)
+        if go or widgets.entered():
+            imgui.close_current_popup()
+            scale(self._session, self.percent, self.n_dots or None, self.least_mm)
+        imgui.same_line(0.0, widgets.gap)
+        if widgets.button("Cancel", "Leave it as it is.", name="Cancel scaling", width=width) or (
+            widgets.escaped()
+        ):
+            imgui.close_current_popup()
