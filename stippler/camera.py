@@ -95,12 +95,6 @@ class Camera:
         dx, dy = inverse @ np.asarray(delta_px, np.float64)
         return replace(self, center_mm=(self.center_mm[0] - dx, self.center_mm[1] - dy))
 
-    def rotated(self, by_rad: float, at_px: Point, size_px: Size) -> Camera:
-        """Turn by an angle about the page's point under `at_px`."""
-        angle = math.remainder(self.rotation_rad + by_rad, math.tau)
-        turned = replace(self, rotation_rad=angle)
-        return turned._moved(self.screen_to_page(at_px, size_px), at_px, size_px)
-
     def flipped(self, at_px: Point, size_px: Size) -> Camera:
         """Mirror the screen left to right about the vertical through `at_px`."""
         mirrored = replace(self, flip=not self.flip, rotation_rad=-self.rotation_rad)

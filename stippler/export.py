@@ -6,7 +6,7 @@ import contextlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stippler.atomic_write import STDOUT, check_writable, replacing
 from stippler.drawing.drawing import Drawing, Page
@@ -14,6 +14,9 @@ from stippler.errors import ParameterError
 from stippler.files.write.format import Format
 from stippler.files.write.formats import ENDINGS, STIPPLE, format_named, format_of, options_of
 from stippler.files.write.options import checked
+
+if TYPE_CHECKING:
+    from stippler.files.write.sheet import Sheet
 
 __all__ = ["ENDINGS", "check_output", "check_size", "chosen", "save", "values_for"]
 
@@ -153,7 +156,6 @@ def _files(
         return
     from dataclasses import replace
 
-    from stippler.files.write.names import plain, unique
     from stippler.files.write.plate import plate_of
 
     def cancelled() -> bool:
@@ -166,8 +168,18 @@ def _files(
     if not one.a_file_a_layer or len(layers) < 2 or os.fspath(path) == STDOUT:
         yield path, one.write(sheet, values)
         return
-    path = Path(path)
-    names = unique(plain(layer.name) for layer in layers)
-    for k, (name, layer) in enumerate(zip(names, layers, strict=True), 1):
-        file = path.with_name(f"{path.stem}-{k}-{name}{path.suffix}")
+    for file, layer in zip(files_of(one, sheet, Path(path)), layers, strict=True):
         yield file, one.write(replace(sheet, layers=(layer,)), values)
+
+
+def files_of(one: Format, sheet: Sheet, path: Path) -> list[Path]:
+    """Return the files that a sheet is written to: of several pens a file for each."""
+    from stippler.files.write.names import plain, unique
+
+    layers = [layer for layer in sheet.layers if not layer.is_empty]
+    if not one.a_file_a_layer or len(layers) < 2:
+        return [path]
+    names = unique(plain(layer.name) for layer in layers)
+    return [
+        path.with_name(f"{path.stem}-{k}-{name}{path.suffix}") for k, name in enumerate(names, 1)
+    ]

@@ -10,12 +10,14 @@ import numpy as np
 
 from stippler.analysis.report import Report, measure_against, measure_dots
 from stippler.api import draw
+from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.dots import Dots
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError
 from stippler.files.read.picture import read_picture
 from stippler.files.read.table import read_csv
+from stippler.stippling.style_tone import toned
 
 _SAID = {
     "dots": "dots",
@@ -67,7 +69,11 @@ def of_picture(
     drawing = draw(path, style, tone=tone, width_mm=width_mm)
     dots, picture = drawing.dots, drawing.reference
     assert picture is not None, "draw() keeps what it drew from"
-    return measure_dots(dots.position_mm, dots.radius_mm) | _against(dots, picture), drawing.notes
+    style = drawing.style_of(PAGE_AREA)
+    report = measure_dots(dots.position_mm, dots.radius_mm) | _against(dots, toned(picture, style))
+    if style.is_inverse:  # white that is too much is ink that is missing
+        report["tone_bias"] = -report["tone_bias"]
+    return report, drawing.notes
 
 
 def as_json(report: Report) -> str:

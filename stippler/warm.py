@@ -1,7 +1,8 @@
 """Compiling all kernels once a machine, so that nothing waits for it later.
 
 ``python -m stippler.warm`` prints a line of progress and does nothing when the kernels are there;
-with ``--levels`` it makes those that a wheel carries.
+with ``--levels`` it makes those that a wheel carries, with ``--level`` those for processors like
+this one.
 """
 
 from __future__ import annotations
@@ -60,14 +61,18 @@ def warm(show: Callable[[str, int, int], None], target: Path | None = None) -> N
     export.finish(objects, target or store.local_store())
 
 
-def warm_levels(show: Callable[[str, int, int], None]) -> None:
-    """Make the stores that a wheel carries: for each level of processors that runs here."""
+def warm_levels(show: Callable[[str, int, int], None], *, all_of_them: bool = True) -> None:
+    """Make the stores that a wheel carries: for each level of processors that runs here.
+
+    Or only for the level of this one: enough for a wheel that is tried where it was made.
+    """
     from stippler.kernels.machine.processor import level, levels
 
     known = levels()
     if level() not in known:  # a processor that nobody has named a level for
         return
-    for name in known[known.index(level()) :]:
+    made = known[known.index(level()) :]
+    for name in made if all_of_them else made[:1]:
         subprocess.run(
             [sys.executable, "-m", "stippler.warm", "--into", str(store.packed_stores() / name)],
             env={**os.environ, "NUMBA_CPU_NAME": name, "NUMBA_CPU_FEATURES": ""},
@@ -213,8 +218,11 @@ def _main() -> None:
     if sys.argv[1:2] == ["--backwards"]:
         _run_backwards(Path(sys.argv[2]))
         return
-    if sys.argv[1:2] == ["--levels"]:
-        warm_levels(lambda name, done, total: print(f"Kernels for {name}: {done}/{total}"))  # noqa: T201
+    if sys.argv[1:2] in (["--levels"], ["--level"]):
+        warm_levels(
+            lambda name, done, total: print(f"Kernels for {name}: {done}/{total}"),  # noqa: T201
+            all_of_them=sys.argv[1] == "--levels",
+        )
         return
     target = Path(sys.argv[2]) if sys.argv[1:2] == ["--into"] else None
     if target is None and is_warm():

@@ -46,17 +46,6 @@ def test_zooming_keeps_the_point_under_the_pointer(camera, at, factor):
     assert math.isclose(zoomed.px_per_mm, camera.px_per_mm * factor)
 
 
-@given(cameras, points, st.floats(-7, 7))
-def test_turning_keeps_the_point_under_the_pointer(camera, at, angle):
-    under = camera.screen_to_page(at, SIZE)
-    turned = camera.rotated(angle, at, SIZE)
-    np.testing.assert_allclose(turned.page_to_screen(under, SIZE), at, atol=1e-6)
-    before = camera.page_to_screen([(0, 0), (10, 0)], SIZE)
-    after = turned.page_to_screen([(0, 0), (10, 0)], SIZE)
-    heading = [math.atan2(*np.flip(b - a)) for a, b in (before, after)]
-    assert abs(math.remainder(heading[1] - heading[0] - angle, math.tau)) < 1e-6
-
-
 @given(cameras, points, points)
 def test_flipping_mirrors_the_screen(camera, at, point):
     x, y = camera.page_to_screen(point, SIZE)

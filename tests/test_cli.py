@@ -145,6 +145,9 @@ def test_stats_of_a_table_are_those_of_its_picture(picture, tmp_path, monkeypatc
     assert len(of_table) > 15
     assert of_table["tone_rmse"] < 0.02
     assert abs(of_table["dots"] - 1500) <= 15
+    white = [*made, "--polarity", "white-on-black", "--json"]
+    white_dots = json.loads(run_here(monkeypatch, capsys, "stats", picture, *white).stdout)
+    assert white_dots["tone_rmse"] < 0.05
     alone = run_here(monkeypatch, capsys, "stats", out)
     assert alone.stdout.startswith("dots ")
     assert "tone" not in alone.stdout

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Self
 
 import shapely
@@ -65,10 +65,6 @@ class Area:
         if not isinstance(outline, Polygon | MultiPolygon):
             raise GeometryError("is no polygon", "outline of an area")
         return cls(**{**data, "outline_mm": outline})
-
-    def renamed(self, name: str) -> Self:
-        """Return it under another name."""
-        return replace(self, name=name)
 
 
 def checked_colour(colour: str, of: str) -> None:

@@ -24,6 +24,7 @@ class Desk(Protocol):
     """What an activity works on."""
 
     messages: Messages
+    notes: tuple[str, ...]
 
     @property
     def document(self) -> Document | None:
@@ -94,11 +95,14 @@ class Opening(Job):
     ----------
     source : Source or None
         The picture; None is an empty page.
+    by_hand : bool
+        Whether the picture is only to be drawn after: no dots are made of it.
     """
 
     source: Source | None
     style: Style
     page: Page | None = None
+    by_hand: bool = False
 
     def take(self, desk: Desk, work: Work) -> Activity:
         """Open the page as soon as the picture is read, and go on with its dots."""
@@ -109,6 +113,9 @@ class Opening(Job):
         if picture is None or self.source is None:
             return self
         desk.open_page(Page(picture.width_mm, picture.height_mm), self.source, picture)
+        _tell(desk, work.notes)
+        if self.by_hand:
+            return Readying(self.request, self.stage, is_held=self.is_held)
         making = Making(self.request, self.stage, self.source, self.style)
         making.is_held = self.is_held
         return making.take(desk, work)
@@ -117,6 +124,29 @@ class Opening(Job):
         """Open the empty page; a picture that was not read leaves what was open."""
         if self.page is not None and outcome == "done":
             desk.open_page(self.page, None, None)
+
+
+def _tell(desk: Desk, notes: tuple[str, ...]) -> None:
+    """Keep what there is to know of how a picture was read; say what is out of the way."""
+    desk.notes = notes
+    odd = [note for note in notes if not note.startswith("read by")]
+    if odd:
+        desk.messages.say(f"the picture: {'; '.join(odd)}", WARNING)
+
+
+@dataclass(slots=True)
+class Readying(Job):
+    """A picture is open to be drawn after; what painting needs is loaded."""
+
+    def take(self, desk: Desk, work: Work) -> Activity:
+        """Go on."""
+        self._note(work)
+        return self
+
+    def end(self, desk: Desk, outcome: str) -> None:
+        """Say what can be done now."""
+        if outcome == "done":
+            desk.messages.say("open as reference only: draw after it by hand, or start the dots")
 
 
 @dataclass(slots=True)
@@ -295,7 +325,7 @@ class Processing(Job):
         document.draft(made.position_mm, made.radius_mm)
 
 
-Activity = Idle | Opening | Reopening | Making | Relaxing | Filling | Processing
+Activity = Idle | Opening | Readying | Reopening | Making | Relaxing | Filling | Processing
 
 
 def _report(desk: Desk, n_dots: int, last: Progress | None) -> None:

@@ -138,9 +138,16 @@ class Command:
 
 
 class Commands:
-    """All commands, found by name or by key; a person may give them other keys."""
+    """All commands, found by name or by key; a person may give them other keys.
+
+    Attributes
+    ----------
+    by_key : bool
+        Whether the command that runs was asked for by its key.
+    """
 
     def __init__(self, commands: Iterable[Command]) -> None:
+        self.by_key = False
         self._by_name: dict[str, Command] = {}
         self._by_key: dict[Key, str] = {}
         for command in commands:
@@ -151,6 +158,7 @@ class Commands:
                 if key in self._by_key:
                     raise ValueError(f"{key} has two commands")
                 self._by_key[key] = command.name
+        self._groups: list[tuple[str, list[Command]]] = []
         self._first_keys = {name: command.keys for name, command in self._by_name.items()}
 
     def __getitem__(self, name: str) -> Command:
@@ -163,7 +171,12 @@ class Commands:
         return iter(self._by_name.values())
 
     def groups(self) -> list[tuple[str, list[Command]]]:
-        """Return the groups in the menu bar's order, each with its commands."""
+        """Return the groups in the menu bar's order, each with its commands; asked every frame."""
+        if not self._groups:
+            self._groups = self._grouped()
+        return self._groups
+
+    def _grouped(self) -> list[tuple[str, list[Command]]]:
         found: dict[str, list[Command]] = {group: [] for group in GROUPS.values()}
         for command in self:
             found.setdefault(command.group, []).append(command)
@@ -205,6 +218,7 @@ class Commands:
                 del self._by_key[key]
         self._by_name[name] = replace(self._by_name[name], keys=keys)
         self._by_key.update(dict.fromkeys(keys, name))
+        self._groups = []
 
     def take(self, event: KeyDown) -> bool:
         """Run the command of a key; return whether it has one."""
@@ -212,5 +226,9 @@ class Commands:
         if command is None:
             return False
         if command.repeats or not event.repeated:
-            command.run()
+            self.by_key = True
+            try:
+                command.run()
+            finally:
+                self.by_key = False
         return True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 
 from stippler.errors import ParameterError
 
@@ -16,7 +17,7 @@ _SIGNS = {"×": "*", "−": "-"}
 _LONGEST, _DEEPEST = 200, 20
 
 
-def parse_number(text: str, unit: str = "") -> float:
+def parse_number(text: str, unit: str = "", more: Mapping[str, float] | None = None) -> float:
     """Return the number that a text tells, in the unit of its field.
 
     ``21 cm``, ``8.5 in``, ``2*15000``, ``50k``, ``(3 + 4) / 2``, ``12,5``; a number without a unit
@@ -24,7 +25,9 @@ def parse_number(text: str, unit: str = "") -> float:
 
     Parameters
     ----------
-    unit : {"", "mm", "°", "%", "px"}
+    unit : {"", "mm", "°", "%", "px", "×"}
+    more : mapping, optional
+        Further units, each as a number of the field's.
 
     Raises
     ------
@@ -33,7 +36,7 @@ def parse_number(text: str, unit: str = "") -> float:
     """
     if len(text) > _LONGEST:
         raise _refused(text[:20] + "…", "is too long")
-    reader = _Reader(text, unit)
+    reader = _Reader(text, unit, more or {})
     value = reader.sum(0)
     if reader.left:
         raise _refused(text, f"{reader.left[0][1]!r} cannot stand there")
@@ -45,8 +48,9 @@ def parse_number(text: str, unit: str = "") -> float:
 class _Reader:
     """Reads tokens from the left; a method for each rank of operators."""
 
-    def __init__(self, text: str, unit: str) -> None:
+    def __init__(self, text: str, unit: str, more: Mapping[str, float]) -> None:
         self._text, self._unit = text, unit
+        self._units = {**_UNITS.get(unit, {}), **more}
         self.left = _tokens(text)
 
     def sum(self, depth: int) -> float:
@@ -94,7 +98,7 @@ class _Reader:
         scale = 1.0
         while self.left and self.left[0][0] == "word":
             word = self._take()
-            units = _UNITS.get(self._unit, {})
+            units = self._units
             if word in units:
                 return scale * units[word]
             if word in _FACTORS and scale == 1.0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from stippler.editor.session import Session
 from stippler.errors import StipplerError
 
 if TYPE_CHECKING:
+    from stippler.drawing.area import Area
     from stippler.drawing.document import Document
     from stippler.drawing.pattern import Pattern, PolygonSet
 
@@ -151,7 +153,6 @@ class Patterns:
         from stippler.drawing.area_edits import edit_areas
         from stippler.drawing.planar.borders import paths_of
         from stippler.drawing.planar.edits import EVEN_ODD, TAKES, add
-        from stippler.drawing.style import Style
         from stippler.stippling.patterns import cells_of
 
         laid, document = self.laid, self.document
@@ -173,13 +174,7 @@ class Patterns:
         except StipplerError as error:
             self._session.messages.say(str(error), WARNING)
             return
-        own: Style = document.drawing.styles[area.style]
-        document.begin("Style of the area between")
-        for k in outcome.made:
-            made = document.drawing.areas[k]
-            i = document.add("style", replace(own, name=f"{made.name} {k}"))
-            document.set("area", k, replace(made, name=f"between {area.name}", style=i))
-        document.commit()
+        _give_style(document, outcome.made, area)
         self._session.messages.say("an area of its own; choose it in the panel Areas", INFO)
 
     # --- its dots -----------------------------------------------------------------------------
@@ -240,3 +235,14 @@ class Patterns:
         self._painting.act(label, act)
         if notes:
             self._session.messages.say("; ".join(notes), WARNING)
+
+
+def _give_style(document: Document, made: Iterable[int], like: Area) -> None:
+    """Give new areas a style of their own, as another area's is."""
+    own = document.drawing.styles[like.style]
+    document.begin("Style of the area between")
+    for k in made:
+        area = document.drawing.areas[k]
+        i = document.add("style", replace(own, name=f"{area.name} {k}"))
+        document.set("area", k, replace(area, name=f"between {like.name}", style=i))
+    document.commit()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.visible import shown
 from stippler.editor.events import NO_MODS
 from stippler.editor.messages import INFO, WARNING
 
@@ -40,15 +41,15 @@ class PrintCheck:
         document = self._session.document
         if document is None or not len(document.dots):
             return
-        found = self._found(document)
-        faults = list(_faults(found))
+        faults = list(_faults(self._found(document)))
         if not faults:
             self._session.messages.say("nothing that print would spoil")
             return
         self._shown = (self._shown + 1) % len(faults)
         what, rows = faults[self._shown]
-        self._painting.toolbox.selection.choose(document.dots.id[rows], NO_MODS)
-        place = document.dots.position_mm[rows]
+        dots = shown(document.drawing).dots
+        self._painting.toolbox.selection.choose(dots.id[rows], NO_MODS)
+        place = dots.position_mm[rows]
         low, high = place.min(axis=0) - _AROUND_MM, place.max(axis=0) + _AROUND_MM
         self._view.show_box((float(low[0]), float(low[1])), (float(high[0]), float(high[1])))
         text = f"{self._shown + 1:,} of {len(faults):,}: {what}"
@@ -74,7 +75,7 @@ class PrintCheck:
     def _found(self, document: Document) -> Findings:
         from stippler.files.checks import check
 
-        return check(document.drawing, self._process())
+        return check(shown(document.drawing), self._process())
 
 
 def _faults(found: Findings) -> Iterator[tuple[str, NDArray[np.int64]]]:
@@ -97,8 +98,9 @@ def _repair(document: Document, process: Process) -> None:
     """Change what differs between the dots and the repaired ones, within a stroke."""
     from stippler.files.checks import repaired
 
-    made = repaired(document.drawing, process)
-    gone = np.setdiff1d(document.dots.id, made.id)
+    visible = shown(document.drawing)
+    made = repaired(visible, process)
+    gone = np.setdiff1d(visible.dots.id, made.id)
     document.remove(document.rows(gone))
     rows = document.rows(made.id)
     dots = document.dots

@@ -85,6 +85,15 @@ class Session(SessionState):
         adjustment = self.adjustment if again else NEUTRAL
         self._begin(Source(path, self.tone, self.width_mm, adjustment))
 
+    def open_reference(self, path: Path) -> None:
+        """Open a picture only to draw after it by hand: no dots are made."""
+        self.supersede()
+        source = Source(path, self.tone, self.width_mm, NEUTRAL)
+        self.launch(
+            lambda: reading.read_only(source, is_warm=self._is_warm),
+            lambda k: Opening(k, work.READ, source, self.style, by_hand=True),
+        )
+
     def open_drawing(self, path: Path) -> None:
         """Open a drawing that was saved."""
         self._reopen(reading.open_drawing(path, is_warm=self._is_warm), file=path)
@@ -458,7 +467,7 @@ class Session(SessionState):
     ) -> None:
         if self.document is not None:
             self.document.history.close()
-        self.document, self._read = document, source
+        self.document, self._read, self.notes = document, source, ()
         self.exports.begin_drawing(file, None if lost else document)
         self.saving.begin_drawing(self.name)
         self.keeping.open(document, self.name, file, lost)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, Protocol
@@ -57,6 +58,8 @@ class SessionState:
         The open drawing; everything that is shown, painted on and written is in it.
     filling : stippler.stippling.fill.Filling
         How a page without a picture is filled next.
+    notes : tuple of str
+        How the open picture was read, as far as that is to be known.
     revision : int
         Grows whenever another drawing is open.
     exports : Exports
@@ -71,6 +74,8 @@ class SessionState:
         self.document: Document | None = None
         self.revision = 0
         self.filling = FillValues()
+        self.notes: tuple[str, ...] = ()
+        self._stage: tuple[str, float] = ("", 0.0)  # and since when
         self.exports = exports
         self._read: Source | None = None  # where the drawing's picture came from
         self._steps = StepRate()
@@ -105,6 +110,13 @@ class SessionState:
     def stage(self) -> str:
         """What the job is at; empty without one."""
         return self.activity.stage if isinstance(self.activity, Job) else ""
+
+    @property
+    def stage_s(self) -> float:
+        """How long the job has been at its stage."""
+        if self.stage != self._stage[0]:
+            self._stage = (self.stage, time.monotonic())
+        return time.monotonic() - self._stage[1]
 
     @property
     def done(self) -> int:

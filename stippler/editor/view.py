@@ -102,6 +102,19 @@ class View:
         self.camera = replace(self.camera, px_per_mm=px_per_mm)
         self._hold()
 
+    def zoom_to(self, px_per_mm: float) -> None:
+        """Show the page at a scale, about the middle of the canvas, within limits."""
+        self.following, self._to_go = False, 0.0
+        low, high = self._limits()
+        self.camera = replace(self.camera, px_per_mm=min(max(px_per_mm, low), high))
+        self._hold()
+
+    def centre(self, at_mm: Point) -> None:
+        """Bring a point of the page to the middle of the canvas."""
+        self.following, self._to_go = False, 0.0
+        self.camera = replace(self.camera, center_mm=at_mm)
+        self._hold()
+
     def pan(self, delta_px: Point) -> None:
         """Move the page by a vector on the screen; part of it stays in sight."""
         self.following = False

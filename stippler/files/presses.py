@@ -6,6 +6,7 @@ import datetime
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +51,18 @@ class Press:
 
 def presses(folder: Path | None = None) -> dict[str, Press]:
     """Return all that were calibrated, by name; entries that are broken are left out."""
-    document, _ = read_document((folder or settings_folder()) / FILE)
+    path = (folder or settings_folder()) / FILE
+    try:
+        status = path.stat()
+    except OSError:
+        return {}
+    return dict(_read_all(path, status.st_mtime_ns, status.st_size))
+
+
+@lru_cache(maxsize=2)
+def _read_all(path: Path, *of_file: int) -> dict[str, Press]:
+    """Return what a file holds, read once for each state of it."""
+    document, _ = read_document(path)
     found = {}
     for name, entry in document.items():
         try:

@@ -146,6 +146,9 @@ def look(asked: Asked, known: Look, cancelled: Callable[[], bool]) -> Iterator[L
     cancelled : callable
         Whether nobody waits for it any more.
     """
+    from stippler.drawing.visible import shown
+
+    asked = replace(asked, drawing=shown(asked.drawing))
     if known.sheet is None or known.sheet_key != asked.sheet_key:
         sheet = _sheet(asked, cancelled)
         if cancelled():

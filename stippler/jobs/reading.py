@@ -15,15 +15,25 @@ if TYPE_CHECKING:
     from stippler.files.native.recovery import Lost
 
 
-def read_source(source: Source) -> Reference:
-    """Read a picture: from the drawing that holds it, or from its file."""
+def read_source(source: Source) -> tuple[Reference, tuple[str, ...]]:
+    """Read a picture: from the drawing that holds it, or from its file; tell what is to be said."""
     from stippler.drawing.reference import Reference
     from stippler.files.read.picture import picture_of_bytes, read_picture
 
     if source.data is None:
-        return read_picture(source.path, tone=source.tone, width_mm=source.width_mm)
+        notes: list[str] = []
+        tone, width_mm = source.tone, source.width_mm
+        return read_picture(source.path, tone=tone, width_mm=width_mm, notes=notes), tuple(notes)
     picture = picture_of_bytes(source.data, source.path.name, source.tone)
-    return Reference.of(picture, source.width_mm)
+    return Reference.of(picture, source.width_mm), ()
+
+
+def read_only(source: Source, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
+    """Read a picture, to be drawn after by hand, and load everything that painting needs."""
+    yield Work(READ)
+    reference, notes = read_source(source)
+    yield Work(READ, 1, 1, reference.adjusted(source.adjustment), notes=notes)
+    yield from make_ready(is_warm=is_warm)
 
 
 def open_drawing(path: Path, *, is_warm: Callable[[], bool]) -> Iterator[Work]:

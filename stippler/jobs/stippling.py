@@ -31,8 +31,8 @@ def stipple_picture(
     """
     if reference is None:
         yield Work(READ)
-        reference = read_source(source)
-        yield Work(READ, 1, 1, reference.adjusted(source.adjustment))
+        reference, notes = read_source(source)
+        yield Work(READ, 1, 1, reference.adjusted(source.adjustment), notes=notes)
     reference = reference.adjusted(source.adjustment)
     n_dots, n_pixels = style.n_dots or DEFAULT_DOTS, reference.source.darkness.size
     note = preflight.warning("stipple", n_dots, n_pixels)

@@ -62,6 +62,8 @@ class Work:
         Where an area is to have more dots.
     document : Document or None
         A drawing that was kept; nobody else holds it.
+    notes : tuple of str
+        What a person should know of how the picture was read.
     note : str
         What a person should know of it.
     area : int
@@ -79,6 +81,7 @@ class Work:
     radius_mm: NDArray[np.float32] | None = None
     points_mm: NDArray[np.float64] | None = None
     document: Document | None = None
+    notes: tuple[str, ...] = ()
     note: str = ""
     area: int = 0
     finished: tuple[tuple[int, Progress], ...] = ()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stippler.camera import Camera, Size
 from stippler.drawing.line import Line
 from stippler.drawing.pattern import Pattern
+from stippler.errors import GeometryError
 from stippler.render.paper import Color, Origin, page_uniforms
 from stippler.render.shaders import Program
 from stippler.render.state import set_state
@@ -106,8 +107,14 @@ def _rows_of(line: Line, origin_mm: Origin) -> Rows:
 
 
 def _outlines_of(pattern: Pattern, origin_mm: Origin) -> Rows:
-    """Return the edges of a pattern's polygons that have a corner on the page."""
-    corners, start = pattern.rings_mm()
+    """Return the edges of a pattern's polygons that have a corner on the page.
+
+    None where a file has one beyond its horizon: the page is drawn all the same.
+    """
+    try:
+        corners, start = pattern.rings_mm()
+    except GeometryError:
+        return _NONE
     at = corners - origin_mm
     on = (np.abs(at) <= origin_mm).all(axis=1)
     shown = np.repeat(np.add.reduceat(on, start[:-1]) > 0, np.diff(start))

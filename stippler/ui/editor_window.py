@@ -12,6 +12,7 @@ from stippler.drawing.preview import Preview
 from stippler.editor.area_acts import AreaActs
 from stippler.editor.area_jobs import AreaJobs, Step
 from stippler.editor.batches import parts_of
+from stippler.editor.commands import Key
 from stippler.editor.desk_state import DeskState
 from stippler.editor.events import (
     CloseAsked,
@@ -35,14 +36,19 @@ from stippler.editor.shaping import Shaping
 from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
 from stippler.errors import StipplerError
+from stippler.jobs.work import PREPARE
 from stippler.jobs.worker import Worker
 from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.area_overlay import AreaOverlay
-from stippler.ui.canvas.canvas import Canvas
+from stippler.ui.canvas.canvas import MAP_EVERY_S, Canvas
 from stippler.ui.canvas.lens import LensKey, place_lens
+from stippler.ui.canvas.navigator import camera_of, draw_navigator, size_of
 from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
 from stippler.ui.canvas.pattern_samples import PatternSamples
+from stippler.ui.canvas.peek import Peek
 from stippler.ui.canvas.pen_samples import PenSamples
+from stippler.ui.canvas.rulers import draw_rulers
+from stippler.ui.field_commands import FieldCommands
 from stippler.ui.panels.areas import AreasPanel
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
@@ -50,15 +56,16 @@ from stippler.ui.panels.history import draw_history
 from stippler.ui.panels.layout import AREAS, DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
 from stippler.ui.panels.lines import draw_lines
 from stippler.ui.panels.menu import MenuBar
-from stippler.ui.panels.notice import draw_invitation, draw_notice
+from stippler.ui.panels.notice import draw_invitation, draw_notice, draw_preparing
 from stippler.ui.panels.patterns import draw_patterns
 from stippler.ui.panels.picture import draw_picture
 from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
-from stippler.ui.panels.progress import draw_work
-from stippler.ui.panels.reference import draw_reference
+from stippler.ui.panels.progress import LOW as WORK_LOW
+from stippler.ui.panels.progress import draw_work, progress_share
+from stippler.ui.panels.reference import draw_reference, draw_tones
 from stippler.ui.panels.shape import draw_shape
 from stippler.ui.panels.status import Sight, draw_status
-from stippler.ui.panels.strip import draw_tools
+from stippler.ui.panels.strip import StripShape, draw_tools
 from stippler.ui.panels.tool import draw_tool
 from stippler.ui.panels.view import draw_view
 from stippler.ui.panels.writing import WritingNotice
@@ -70,7 +77,8 @@ from stippler.ui.window.gui import Gui
 from stippler.ui.window.window import Window
 
 _CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
-_LEAST_SETTINGS = 120.0  # the theme's pixels; a lower panel scrolls as a whole
+_LEAST_SETTINGS = 60.0  # the theme's pixels; a lower panel scrolls as a whole
+_LOW = 300.0  # likewise; in a lower panel the work is one line
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
@@ -121,7 +129,6 @@ class Editor:
         self.pointer = self.hands.pointer
         self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
-        self._layout = Layout()
         self.panels = Panels(
             {
                 DRAWING: self._draw_drawing,
@@ -133,6 +140,8 @@ class Editor:
             },
             kept.closed,
         )
+        self._layout = Layout(self.panels.names)
+        self.peek = Peek(self.look, session, self.painting)
         self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
             "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
             "pattern": lambda: draw_patterns(
@@ -142,11 +151,13 @@ class Editor:
         self.lens_key = LensKey(self.look)
         self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
+        self.popups.field_commands = FieldCommands(self.gui.fields, self._show_if_panel)
         self._load_keys()
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
         self._schedule, self._rate = Schedule(), FrameRate()
         self._ratio = 1.0
+        self._late: list[Event] = []  # commands for the next building of the panels
         self._preview: Preview | None = None
         self._last_s = self._kept_s = clock()
         self._may_have_changed = False  # since preferences were last looked at
@@ -171,6 +182,7 @@ class Editor:
             self.show_panel,
             self.reset_panels,
             self.panels.turn_focus,
+            self.peek,
         )
 
     # --- the loop's two halves --------------------------------------------------------------
@@ -275,40 +287,57 @@ class Editor:
     def _build(self, events: list[Event], dt_s: float) -> None:
         """Build the window's panels once and take events meanwhile; nothing is drawn yet."""
         self.gui.dress(self.look)
-        fed = [(event, self.gui.feed(event)) for event in events]
+        fed = [(event, False) for event in self._late]
+        self._late = [event for event in events if self._is_late(event)]
+        fed += [(one, self.gui.feed(one)) for one in events if one not in self._late]
         self.widgets = Widgets(
             self.look.theme,
             self.gui.fonts,
             self.gui.scale,
             self.gui.escape_level,
             lambda text: self.session.messages.say(text, WARNING),
+            numbers=self.gui.numbers,
+            fields=self.gui.fields,
         )
         failure = self.gui.frame(lambda: self._draw_ui(fed, dt_s))
         if failure is not None:
             self._report(failure, "the window")
 
+    def _is_late(self, event: Event) -> bool:
+        """Whether a key is a command that counts after the number that is being typed."""
+        if not isinstance(event, KeyDown):
+            return False
+        return self.commands.owner(Key(event.key, event.mods)) is not None and (
+            self.gui.ends_number(event)
+        )
+
     def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
         self._guarded("the menu", lambda: self.menu.draw(self.widgets, self.commands, recent))
-        area = self._layout.draw(self.gui.scale)
+        tools = StripShape.fitting(len(self.painting.toolbox.tools) + 1, self.gui.scale)
+        area = self._layout.draw(self.gui.scale, tools.width)
         self._place(area)
         for event, for_panels in events:
             self._take_guarded(event, for_panels=for_panels)
         self.lens_key.let_pass()
+        self.peek.let_pass()
         self.painting.tick(self._window.now_s)
         self.view.advance(dt_s)
         self._preview = self._previewed()
         self.canvas.show(area, self.view.size_px, self._preview, self.view.camera, self._ratio)
+        self._guarded("what is beside the page", lambda: self._draw_beside(area))
         self._guarded("the brush's outline", lambda: self._draw_overlay(area))
         self._guarded("the lens", lambda: self._draw_lens(area))
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
-        self._guarded("the tools", self._draw_tools)
-        self.panels.draw(self._guarded)
+        self._guarded("the tools", lambda: self._draw_tools(tools))
+        self.panels.draw(self._guarded, self.widgets, survey=self.popups.palette.is_asked)
         if not self.panels.is_in_front(SHAPE):
             self.shaping.let_go()
         if self.session.drawing is None and not self.session.busy:
             draw_invitation(self.widgets, self.commands, recent(), area)
+        if self.session.drawing is None and self.session.stage == PREPARE:
+            draw_preparing(self.widgets, progress_share(self.session), area)
         self._guarded("the status bar", self._draw_status)
         self._guarded("the notice", lambda: draw_notice(self.widgets, self.session.messages, area))
         exports = self.session.exports
@@ -316,13 +345,16 @@ class Editor:
         self.popups.draw(self.widgets, self._guarded)
 
     def _draw_drawing(self) -> None:
-        room = imgui.get_content_region_avail().y - WORK_HEIGHT * self.gui.scale
-        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * self.gui.scale)))
+        scale, height = self.gui.scale, imgui.get_content_region_avail().y
+        is_low = height < _LOW * scale
+        room = height - (WORK_LOW if is_low else WORK_HEIGHT) * scale
+        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * scale)))
         draw_picture(self.widgets, self.session, self.commands)
+        draw_tones(self.widgets, self.session, self.look, self.commands)
         self.widgets.rule()
         draw_dots(self.widgets, self.session)
         imgui.end_child()
-        draw_work(self.widgets, self.session, self.commands)
+        draw_work(self.widgets, self.session, self.commands, is_low=is_low)
 
     def _draw_tool(self) -> None:
         n_selected = self.painting.n_selected
@@ -340,6 +372,10 @@ class Editor:
     def _draw_history(self) -> None:
         draw_history(self.widgets, self.session, self.painting, self.commands)
 
+    def _show_if_panel(self, name: str) -> None:
+        if name in self.panels.names:
+            self.show_panel(name)
+
     def show_panel(self, name: str) -> None:
         """Bring a panel to the front."""
         self.panels.show(name)
@@ -350,8 +386,9 @@ class Editor:
         self.panels.show_all()
         self._layout.reset()
 
-    def _draw_tools(self) -> None:
-        draw_tools(self.widgets, self.painting.toolbox, self.commands)
+    def _draw_tools(self, shape: StripShape) -> None:
+        toolbox = self.painting.toolbox
+        draw_tools(self.widgets, toolbox, self.commands, shape)
 
     @property
     def _overlay(self) -> Overlay:
@@ -365,6 +402,21 @@ class Editor:
             choice = self.painting.toolbox.areas
             self._area_overlay.draw(document, choice, self.view, area, self._ratio)
         draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
+
+    def _draw_beside(self, area: Rect) -> None:
+        """Draw the picture's half, the rulers and the navigator."""
+        look, drawing = self.look, self.session.drawing
+        if drawing is None:
+            return
+        if look.split_shown and self.session.reference is not None:
+            self.canvas.show_half(area, self.view.size_px, self.gui.scale, look.theme)
+        if look.rulers_shown:
+            draw_rulers(self.widgets, self.view, area, self._ratio, self.pointer.at_px)
+        if look.navigator_shown:
+            page = drawing.page
+            size_px = size_of(page, area, self.gui.scale, self._ratio)
+            texture = self.canvas.map_texture(camera_of(page, size_px), size_px)
+            draw_navigator(self.widgets, self.view, page, texture, area, self._ratio)
 
     def _draw_lens(self, area: Rect) -> None:
         at_px, tip = self.pointer.at_px, self._overlay.tip
@@ -381,7 +433,23 @@ class Editor:
         camera = self.view.camera
         zoom = camera.px_per_mm / self._window.px_per_mm
         sight = Sight(camera, self.pointer.at_mm, zoom, self.look.dots_shown)
-        draw_status(self.widgets, self.session, sight, self._rate)
+        typed = draw_status(
+            self.widgets, self.session, sight, self._rate, self.commands, self._hint()
+        )
+        if typed is not None:
+            self.view.zoom_to(typed * self._window.px_per_mm)
+
+    def _hint(self) -> str:
+        """Return what the tool at hand does, and how large its tip is on the screen."""
+        toolbox = self.painting.toolbox
+        if toolbox.tool is None:
+            return ""
+        brush = toolbox.brush
+        if brush is None or not brush.about.has_tip:
+            return f"{toolbox.tool.label}: {toolbox.tool.tip}"
+        px = 2.0 * brush.radius_mm * self.view.camera.px_per_mm
+        size = f"{px:,.0f}" if px >= 10.0 else f"{px:.1f}"
+        return f"{toolbox.tool.label}, {size} px wide on the screen: {toolbox.tool.tip}"
 
     def _previewed(self) -> Preview | None:
         """Return the change that is held in a panel, or that the brush or the style will make."""
@@ -409,6 +477,7 @@ class Editor:
     def _take(self, event: Event, *, for_panels: bool) -> None:
         """Bring one event to whom it concerns."""
         self.lens_key.take(event)
+        self.peek.take(event)
         elsewhere = not self.hands.owns(event, over_panel=self.gui.wants_pointer)
         match event:
             case Scrolled() if self.lens_key.is_held:
@@ -486,6 +555,8 @@ class Editor:
             self._schedule.wake_at(now + message.left_s + 0.01)
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
+        if self.canvas.map_is_late:
+            self._schedule.wake_at(now + MAP_EVERY_S)
         self._keep_soon(now)
         if self.popups.dialogs.waiting or self.session.exporting:
             self._schedule.wake_at(now + _ANSWER_S)

@@ -25,6 +25,12 @@ class Look:
         Whether outlines of patterns are marked; their tool does that.
     marks_shown : bool
         Whether fixed and selected dots have colours of their own.
+    rulers_shown, navigator_shown : bool
+        Along the edges of the canvas; in its corner.
+    split_shown : bool
+        Whether the picture takes the left half of the canvas, the drawing the right.
+    peek : {"", "picture", "before"}
+        What is shown for as long as a key is held, instead of the drawing.
     lens : {"none", "reduce", "magnify"}
     reduction, magnification : int
         How many times smaller or larger than on the page the lens shows things.
@@ -39,6 +45,10 @@ class Look:
     patterns_shown: bool = False
     reference_shown: bool = False
     opacity: float = 0.35
+    rulers_shown: bool = False
+    navigator_shown: bool = False
+    split_shown: bool = False
+    peek: str = ""
     lens: str = "none"
     reduction: int = 4
     magnification: int = 4
@@ -47,6 +57,7 @@ class Look:
     def begin(self) -> None:
         """Make what was kept from another time fit to begin with: in range, and no dots hidden."""
         self.dots_shown = self.marks_shown = True
+        self.peek = ""
         self.patterns_shown = False
         self.lens = self.lens if self.lens in LENSES else "none"
         for name in ("reduction", "magnification"):

@@ -120,3 +120,27 @@ def test_dots_upon_a_line_are_inked_once(ctx, renderer, ink):
     renderer.scene.set_lines({0: line})
     found = ink(Camera((30.0, 20.0), 10.0), (600, 400)).sum() / 100
     assert found == pytest.approx(shapely.area(line.outline()), rel=0.005)
+
+
+def test_outlines_of_patterns_are_marked_where_asked(ctx, renderer, canvas):
+    from stippler.drawing.deformation import Deformation
+    from stippler.drawing.pattern import Pattern
+    from stippler.stippling.patterns import builtin
+
+    pattern = Pattern.over(0, builtin("bricks"), (0, 0, 60, 40), 30.0)
+    beyond = Pattern(0, builtin("bricks"), 1, 1, Deformation((1, 0, 0, 0, 1, 0, 1, 0, -0.5)))
+    renderer.scene.set_page(60, 40)
+    renderer.scene.lines.set_patterns([beyond, pattern], renderer.scene.origin_mm)
+    target = canvas((480, 320))
+
+    def drawn(**shown):
+        frame = Frame(Camera((30.0, 20.0), 8.0), (480, 320), paper=(1, 1, 1), desk=(1, 1, 1),
+                      **shown)  # fmt: skip
+        renderer.draw(frame, target.framebuffer)
+        return (target.pixels().astype(int) < 250).any(axis=2).mean()
+
+    assert drawn() == 0.0
+    assert drawn(patterns=True, marks=None) == 0.0
+    assert 0.1 < drawn(patterns=True) < 0.5
+    renderer.scene.lines.set_patterns([], renderer.scene.origin_mm)
+    assert drawn(patterns=True) == 0.0

@@ -59,7 +59,7 @@ def test_many_taps_of_one_batch_all_count(desk) -> None:
 
 def test_a_stroke_that_ends_over_a_panel_is_the_canvas_s(desk) -> None:
     blank(desk)
-    desk.host.key("s")
+    desk.host.click("Spray dots")
     start = desk.host.place("Copy brush")
     with desk.host.batch():
         desk.host.move(*CANVAS)

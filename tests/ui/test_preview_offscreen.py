@@ -101,7 +101,7 @@ def test_a_press_leaves_what_hovering_showed(opened, name: str) -> None:
 def test_the_page_may_be_turned_mirrored_and_zoomed(opened) -> None:
     view = opened.app.editor.view
     middle = (view.size_px[0] / 2, view.size_px[1] / 2)
-    turned = view.camera.rotated(0.7, middle, view.size_px).flipped(middle, view.size_px)
+    turned = replace(view.camera, rotation_rad=0.7).flipped(middle, view.size_px)
     view.camera = turned.zoomed(1.7, middle, view.size_px)
     test_a_press_leaves_what_hovering_showed(opened, "stretch")
 

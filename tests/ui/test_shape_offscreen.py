@@ -46,6 +46,7 @@ def hold(desk, label: str, share: float) -> None:
     x0, y0, x1, y1 = desk.app.editor.widgets.marks[label]
     desk.host.move(0.5 * (x0 + x1), 0.5 * (y0 + y1))
     desk.host.press()
+    desk.host.move(0.5 * (x0 + x1) + 8.0, 0.5 * (y0 + y1))  # a press alone changes nothing
     desk.host.move(x0 + share * (x1 - x0), 0.5 * (y0 + y1))
     desk.host.settle()
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from stippler.drawing.adjustment import NEUTRAL
-from stippler.ui.panels.layout import VIEW
+from stippler.ui.panels.layout import DRAWING, VIEW
 from stippler.ui.theme import PANEL_WIDTH, STRIP_WIDTH
 
 PLACE = (650.0, 330.0)
@@ -188,10 +188,13 @@ def test_the_picture_is_adjusted_before_ones_eyes_and_then_for_the_dots(opened) 
     place = on_screen(opened, 60, 45)
     document, ink = session.document, float((session.document.dots.radius_mm**2).sum())
     assert not look.reference_shown
+    opened.app.editor.show_panel(DRAWING)
+    host.settle()
+    host.click("More tones")
     host.click("Invert")
     assert session.adjustment.invert
     assert look.reference_shown  # what changes is seen
-    host.click("Show dots")
+    host.key("d")
     x, y = (round(v) for v in place)
     inverted = host.screenshot()[y, x].mean()
     host.click("Invert")

@@ -7,6 +7,7 @@ are asked pixel by pixel.
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.files.read.pixels import CHANNELS, Pixels
+from stippler.names import shown
 
 # shares of linear light, ITU-R BT.709
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
@@ -22,6 +24,8 @@ _WEIGHTS_D50 = np.array([0.22249, 0.71690, 0.06061])  # the same as profiles hav
 DEEPEST = 65535  # finer samples are rounded to this many steps
 _SPACES = {b"GRAY": "gray", b"RGB ": "rgb", b"CMYK": "cmyk"}
 _RELATIVE, _BLACK_POINT = 1, 0x2000  # lcms: relative colorimetric; black ink is black
+_LONGEST_NAME = 60
+BY_PROFILE = "read by its colour profile"
 _SAME = 2e-3  # of light: differences below this are rounding in a profile
 
 
@@ -128,13 +132,26 @@ def _by_profile(pixels: Pixels, unit: NDArray[np.float64]) -> tuple[Light | None
         return None, "its colour profile is of another kind than its pixels; taken as sRGB"
     try:
         if wanted == "gray":
-            return _of_neutral(profile, space, unit), ""
-        if wanted == "rgb":
-            return _of_rgb(profile, unit), ""
-        paper = float(_transformed(np.zeros((1, 1, 4), np.uint8), profile)[0, 0])
-        return Light((), profile, paper), ""
+            found = _of_neutral(profile, space, unit)
+        elif wanted == "rgb":
+            found = _of_rgb(profile, unit)
+        else:
+            paper = float(_transformed(np.zeros((1, 1, 4), np.uint8), profile)[0, 0])
+            found = Light((), profile, paper)
     except (ValueError, RuntimeError) as error:  # lcms' own error is a RuntimeError
         return None, f"its colour profile cannot be used ({error}); taken as sRGB"
+    return replace(found, note=f"{BY_PROFILE} {_name(profile)}".rstrip()), ""
+
+
+def _name(profile: bytes) -> str:
+    """Return what a profile calls itself; nothing where it does not."""
+    from PIL import ImageCms
+
+    try:
+        name = ImageCms.getProfileDescription(ImageCms.ImageCmsProfile(io.BytesIO(profile)))
+    except (ImageCms.PyCMSError, OSError, ValueError, TypeError):
+        return ""
+    return " ".join(shown(name).split())[:_LONGEST_NAME]
 
 
 def _of_neutral(profile: bytes, space: str, unit: NDArray[np.float64]) -> Light:

@@ -235,7 +235,9 @@ def _png(data: bytes) -> Pixels:
     try:
         return _decoded_png(data)
     except (OSError, ValueError, SyntaxError):
-        return _decoded_png(png.without_needless_chunks(data))
+        found = _decoded_png(png.without_needless_chunks(data))
+        note = "parts of the file beside the picture are damaged; they are left out"
+        return replace(found, notes=(*found.notes, note))
 
 
 def _decoded_png(data: bytes) -> Pixels:

@@ -43,6 +43,9 @@ _RADIUS_DECIMALS = 1
 _MANY = 2_000  # round dots whose circles are in units of the last decimal: no points, fewer bytes
 _WHOLE_RADIUS = 100  # such units: radii of so many are whole, with the ink kept on average
 _GOLDEN = 0.6180339887498949
+MOST_ELEMENTS = 900_000
+"""Readers refuse files of a million elements (resvg, librsvg)."""
+_BETWEEN = b'"/>\n<path d="'  # two dots; nothing between them is one path of both
 
 # a picture of one white pixel: viewers show paper, while plotters and lasers look for paths
 _WHITE = (
@@ -80,6 +83,7 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
 
     Notes
     -----
+    Of more than `MOST_ELEMENTS` dots many share a path, and round ones are compound strokes.
     In a layer the round dots come first, then smooth ellipses, then rough outlines. A path keeps
     within 1 % of the radius of the formula in `kernels/shapes/dot_shape.py`.
     """
@@ -90,12 +94,17 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
         raise ParameterError(
             f"{decimals} is no number of decimals", "decimals", f"give 0 to {MAX_DECIMALS}"
         )
+    how = values.get("round_dots", CIRCLES)
+    is_huge = sum(len(layer.dots) for layer in sheet.layers) > MOST_ELEMENTS
+    if is_huge and how == CIRCLES:
+        how = COMPOUND
     yield _head(sheet, paper=bool(values.get("paper", True)))
     for number, layer in enumerate(sheet.layers, 1):
         if not layer.is_empty:
             if values.get("sort"):
                 layer = sorted_dots(layer)
-            yield from _layer(number, layer, decimals, values.get("round_dots", CIRCLES))
+            parts = _layer(number, layer, decimals, how)
+            yield from (part.replace(_BETWEEN, b"") for part in parts) if is_huge else parts
     yield b"</svg>\n"
 
 

@@ -24,6 +24,8 @@ def file_commands(parts: Parts) -> Iterator[Command]:
 
     yield Command("file.new", "New page", popups.new_page.ask, (Key("n", CTRL),))
     yield Command("file.open", "Open", filing.ask_picture, (Key("o", CTRL),))
+    yield Command("file.open_reference", "Open as reference only", filing.ask_reference,
+                  tip="a picture to draw after by hand; no dots are made of it.")  # fmt: skip
     yield Command("file.recent_files", "Recent files", popups.recent.ask, (Key("o", CTRL_SHIFT),))
     yield Command("file.forget", "Forget recent pictures", filing.forget_recent,
                   can=lambda: bool(filing.recent()))  # fmt: skip

@@ -14,6 +14,7 @@ from stippler.editor.selecting import Selecting
 from stippler.editor.session import Session
 from stippler.editor.view import View
 from stippler.ui.canvas.lens import LensKey
+from stippler.ui.canvas.peek import Peek
 from stippler.ui.look import Look
 from stippler.ui.panels.docks import Panels
 from stippler.ui.popups.popups import Popups
@@ -32,6 +33,8 @@ class Parts:
         Shows every panel where it was at first.
     turn_focus : callable
         Gives the panel in front the keyboard, or the canvas.
+    peek : Peek
+        Shows the picture, or the drawing before its last step, while a key is held.
     """
 
     window: Window
@@ -50,3 +53,4 @@ class Parts:
     show_panel: Callable[[str], None]
     reset_panels: Callable[[], None]
     turn_focus: Callable[[], None]
+    peek: Peek

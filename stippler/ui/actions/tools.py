@@ -79,7 +79,9 @@ def tool_commands(parts: Parts) -> Iterator[Command]:
     def chooser(name: str) -> Callable[[], None]:
         def choose() -> None:
             toolbox.choose(name)
-            parts.show_panel(TOOL)
+            commands = parts.popups.commands
+            if commands is None or not commands.by_key:  # a letter hides no panel
+                parts.show_panel(TOOL)
 
         return choose
 

@@ -64,11 +64,40 @@ def view_commands(parts: Parts) -> Iterator[Command]:
                   tip="the colours of fixed and selected dots.")  # fmt: skip
     yield Command("view.full_screen", "Full screen", window.turn_full_screen, (Key("f11"),),
                   is_on=lambda: window.is_full_screen)  # fmt: skip
+    yield from _comparing_commands(parts)
     yield from _turning_commands(parts)
     yield from _lens_commands(parts)
     yield Command("view.theme", "Light or dark", look.turn_theme, (Key("t"),))
     yield Command("view.larger", "Larger text and controls", lambda: scale_text(_TEXT_STEP))
     yield Command("view.smaller", "Smaller text and controls", lambda: scale_text(1 / _TEXT_STEP))
+
+
+def _comparing_commands(parts: Parts) -> Iterator[Command]:
+    look, session, peek = parts.look, parts.session, parts.peek
+
+    def turn(name: str) -> None:
+        setattr(look, name, not getattr(look, name))
+
+    def has_picture() -> bool:
+        return session.reference is not None
+
+    def can_undo() -> bool:
+        return session.document is not None and session.document.history.undone is not None
+
+    yield Command("view.peek", "Look at the picture alone", peek.show_picture, (Key("d", SHIFT),),
+                  can=has_picture, is_on=lambda: look.peek == "picture",
+                  tip="for as long as the key is held.")  # fmt: skip
+    yield Command("view.before", "Look at the drawing before the last step", peek.show_before,
+                  (Key("z", SHIFT),), can=can_undo, is_on=lambda: look.peek == "before",
+                  tip="for as long as the key is held.")  # fmt: skip
+    yield Command("view.split", "Picture beside the drawing", lambda: turn("split_shown"),
+                  (Key("r", SHIFT),), can=has_picture, is_on=lambda: look.split_shown,
+                  tip="the picture in the left half, the drawing in the right.")  # fmt: skip
+    yield Command("view.rulers", "Rulers", lambda: turn("rulers_shown"), (Key("r", CTRL),),
+                  is_on=lambda: look.rulers_shown, tip="in mm, along the canvas.")  # fmt: skip
+    yield Command("view.navigator", "Navigator", lambda: turn("navigator_shown"),
+                  is_on=lambda: look.navigator_shown,
+                  tip="the whole page in a corner of the canvas.")  # fmt: skip
 
 
 def _turning_commands(parts: Parts) -> Iterator[Command]:

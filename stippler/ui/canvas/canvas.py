@@ -6,6 +6,8 @@ there, at the cost of a rectangle.
 
 from __future__ import annotations
 
+import math
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -20,7 +22,9 @@ from stippler.editor.session import Session
 from stippler.editor.tools.selection import Selection
 from stippler.ui.canvas.lens import MARGIN, Glass
 from stippler.ui.canvas.patch import Patch
+from stippler.ui.canvas.side_view import SideView
 from stippler.ui.look import Look
+from stippler.ui.theme import Theme
 from stippler.ui.widgets import Rect
 
 if TYPE_CHECKING:
@@ -29,6 +33,8 @@ if TYPE_CHECKING:
     from stippler.render.renderer import Renderer
     from stippler.render.scene import Scene
 
+MAP_EVERY_S = 0.4  # the navigator is drawn no more often
+_WAITING = 0.45  # opacity of the picture
 _RIM = 1.5  # the theme's pixels; each of the two lines of a lens's rim
 
 
@@ -52,6 +58,12 @@ class Canvas:
         self._glass: Glass | None = None  # of this frame
         self._lens_drawn: object = None
         self.patch = Patch(ctx)
+        self._half, self._map = SideView(ctx), SideView(ctx)
+        self._shows_half = False
+        self._map_camera: Camera | None = None  # of the navigator, in this frame
+        self._map_size_px: Size = (1, 1)
+        self._map_drawn_s = -math.inf
+        self._map_late = False
         self.n_drawn = self.n_lens_drawn = 0
 
     def show(
@@ -70,6 +82,28 @@ class Canvas:
         )
         self.patch.place(preview, self._made, camera, size_px)
         self.patch.show(area, ratio)
+
+    def show_half(self, area: Rect, size_px: Size, scale: float, theme: Theme) -> None:
+        """Put the picture over the left half of the canvas for this frame; `draw` fills it in."""
+        self._shows_half = True
+        texture, (x0, y0, x1, y1) = self._half.texture(size_px), area
+        middle = round((x0 + x1) / 2)
+        draw = imgui.get_background_draw_list()
+        draw.push_clip_rect((x0, y0), (middle, y1), True)
+        draw.add_image(imgui.ImTextureRef(texture.glo), area[:2], area[2:], (0.0, 1.0), (1.0, 0.0))
+        draw.pop_clip_rect()
+        line = imgui.get_color_u32((*theme.accent, 1.0))
+        draw.add_line((middle, y0), (middle, y1), line, 1.5 * scale)
+
+    def map_texture(self, camera: Camera, size_px: Size) -> moderngl.Texture:
+        """Return the navigator's texture; `draw` fills it in, now and then."""
+        self._map_camera, self._map_size_px = camera, size_px
+        return self._map.texture(size_px)
+
+    @property
+    def map_is_late(self) -> bool:
+        """Whether the navigator shows the page as it was."""
+        return self._map_late
 
     def show_lens(self, area: Rect, glass: Glass, scale: float, ratio: float) -> None:
         """Put a lens over the picture for this frame; `draw` fills it in.
@@ -122,9 +156,37 @@ class Canvas:
             glass = replace(frame, camera=self._glass.camera, preview=preview)
             self._draw_lens((content, glass, self._lens), glass)
         self._glass = None
+        if session.drawing is not None and not look.peek:
+            self._draw_sides(session, frame, content)
+        self._shows_half, self._map_camera = False, None
         if self._made is not None:
             self.patch.draw(self._made, replace(frame, preview=preview), page)
         return is_new
+
+    def _draw_sides(self, session: Session, frame: Frame, content: object) -> None:
+        """Draw the picture's half, and the navigator, where it is time for it."""
+        self._map_late = False
+        if self._shows_half and session.reference is not None:
+            renderer = self._renderer()
+            renderer.scene.set_reference(session.reference)
+            alone = replace(
+                frame, dots=False, marks=None, opacity=1.0, adjustment=session.adjustment
+            )
+            self._half.draw(renderer, alone, (alone, id(session.reference)))
+        camera = self._map_camera
+        if camera is None or session.drawing is None:
+            return
+        small = replace(frame, camera=camera, size_px=self._map_size_px, marks=None, preview=None)
+        key = (content, small)
+        if not self._map.is_stale(key):
+            return
+        held = session.document is not None and session.document.in_stroke
+        now = time.monotonic()
+        if held or now - self._map_drawn_s < MAP_EVERY_S:
+            self._map_late = True
+            return
+        self._map_drawn_s = now
+        self._map.draw(self._renderer(), small, key)
 
     def _draw_page(
         self, session: Session, selection: Selection, solo: int | None, frame: Frame
@@ -200,6 +262,8 @@ class Canvas:
         """Free every GL object."""
         self._free()
         self.patch.close()
+        self._half.close()
+        self._map.close()
         if self._lens is not None:
             self._lens.release()
         if self._made is not None:
@@ -211,17 +275,20 @@ def _frame(camera: Camera, size_px: Size, look: Look, session: Session) -> Frame
     from stippler.render.frame import FIXED, SELECTED, Frame
 
     theme, opacity = look.theme, look.reference_opacity if session.reference else 0.0
+    if session.reference and session.busy and not session.n_dots:
+        opacity = max(opacity, _WAITING)  # something to look at until there are dots
+    peeks = look.peek == "picture" and session.reference is not None
     return Frame(
         camera,
         size_px,
         paper=theme.paper,
         desk=theme.desk,
         ink=theme.ink,
-        marks=(FIXED, SELECTED) if look.marks_shown else None,
-        dots=look.dots_shown,
+        marks=(FIXED, SELECTED) if look.marks_shown and not peeks else None,
+        dots=look.dots_shown and not peeks,
         patterns=look.patterns_shown,
-        opacity=opacity,
-        adjustment=session.adjustment if opacity else NEUTRAL,
+        opacity=1.0 if peeks else opacity,
+        adjustment=session.adjustment if opacity or peeks else NEUTRAL,
     )
 
 

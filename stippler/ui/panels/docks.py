@@ -6,7 +6,20 @@ from collections.abc import Callable, Mapping
 
 from imgui_bundle import imgui
 
+from stippler.ui.fields import Fields
+from stippler.ui.widgets import Rect, Widgets
+
 Guarded = Callable[[str, Callable[[], None]], None]
+_AWAY = 20_000.0
+_UNSEEN = (
+    imgui.WindowFlags_.no_inputs
+    | imgui.WindowFlags_.no_nav
+    | imgui.WindowFlags_.no_decoration
+    | imgui.WindowFlags_.no_saved_settings
+    | imgui.WindowFlags_.no_docking
+    | imgui.WindowFlags_.no_focus_on_appearing
+    | imgui.WindowFlags_.no_bring_to_front_on_focus
+)
 
 
 class Panels:
@@ -25,6 +38,8 @@ class Panels:
         self._to_show = ""
         self._in_front: set[str] = set()
         self._turns_focus = False
+        self._fields = Fields()
+        self._tabs: dict[str, Rect] = {}
         self.are_hidden = False
         self._home = 0  # where the first panel is docked
 
@@ -68,17 +83,43 @@ class Panels:
         self._closed.clear()
         self.are_hidden = False
 
-    def draw(self, guarded: Guarded) -> None:
-        """Draw the panels that are shown; a faulty one leaves the others alone."""
+    def draw(self, guarded: Guarded, widgets: Widgets, *, survey: bool = False) -> None:
+        """Draw the panels that are shown; a faulty one leaves the others alone.
+
+        Parameters
+        ----------
+        survey : bool
+            Whether the others are drawn, too, out of sight, so that the palette knows all controls.
+        """
+        self._fields, self._tabs = widgets.fields, {}
+        if survey:
+            widgets.fields.forget()
         for name, draw in self._parts.items():
             if self.is_open(name) and not self.are_hidden:
                 guarded(f"the panel {name}", lambda name=name, draw=draw: self._draw(name, draw))  # type: ignore[misc]
+        widgets.marks |= {f"panel {name}": tab for name, tab in self._tabs.items()}
+        if survey:
+            self._survey(guarded, widgets)
         if self._to_show:
             imgui.set_window_focus(self._to_show)
             self._to_show = ""
         if self._turns_focus:
             self._turns_focus = False
             self._turn_focus()
+
+    def _survey(self, guarded: Guarded, widgets: Widgets) -> None:
+        """Draw all panels where nobody sees them, with all that is folded away."""
+        fields, scale = widgets.fields, widgets.scale
+        fields.is_survey = True
+        for name, draw in self._parts.items():
+            imgui.set_next_window_pos((-_AWAY, -_AWAY))
+            imgui.set_next_window_size((320.0 * scale, _AWAY / 2))
+            imgui.begin(f"##survey {name}", None, _UNSEEN)
+            fields.panel = name
+            guarded(f"the panel {name}", draw)
+            fields.panel = ""
+            imgui.end()
+        fields.is_survey = False
 
     def _turn_focus(self) -> None:
         context = imgui.get_current_context()
@@ -96,9 +137,15 @@ class Panels:
         cross = True if name in self._in_front else None
         shown, stays = imgui.begin(name, cross, imgui.WindowFlags_.no_collapse)
         self._home = self._home or imgui.get_window_dock_id()
+        tab = imgui.internal.get_current_window().dc.dock_tab_item_rect
+        self._tabs[name] = (tab.min.x, tab.min.y, tab.max.x, tab.max.y)
         if shown:
             self._in_front.add(name)
-            draw()
+            self._fields.panel = name
+            try:
+                draw()
+            finally:
+                self._fields.panel = ""
         else:
             self._in_front.discard(name)
         imgui.end()

@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from stippler.editor.commands import Commands
-from stippler.editor.lines import ALONG, BORDER, EDGES, HATCHING, HOLDS, PLACES, SIDES, Lines
+from stippler.editor.lines import (
+    ALONG,
+    BORDER,
+    EDGES,
+    HATCHING,
+    HOLDS,
+    PLACES,
+    SIDES,
+    Lines,
+    RowValues,
+)
 from stippler.ui.widgets import Widgets
 
 if TYPE_CHECKING:
@@ -104,6 +114,14 @@ def _draw_values(widgets: Widgets, lines: Lines, chosen: list[int], line: Line) 
     meeting = _MEETINGS[widgets.segments("Dots do", labels, _MEETINGS.index(line.meeting), tips)]
     if meeting != line.meeting:
         lines.change(chosen, meeting=meeting)
+    _draw_meeting(widgets, lines, chosen, line)
+    n = sum(lines.n_on(k) for k in chosen)
+    length = sum(lines.all[k].length_mm for k in chosen)
+    widgets.caption(f"{length:.1f} mm long, {n:,} dots on it")
+
+
+def _draw_meeting(widgets: Widgets, lines: Lines, chosen: list[int], line: Line) -> None:
+    """Draw from how far dots keep off or adhere."""
     if line.meeting == "distance":
         distance = widgets.length("Keep off", line.distance_mm, "From its edge.")
         if distance != line.distance_mm:
@@ -112,9 +130,6 @@ def _draw_values(widgets: Widgets, lines: Lines, chosen: list[int], line: Line) 
         reach = widgets.length("Its reach", line.reach_mm, "From how far dots line up.")
         if reach != line.reach_mm:
             lines.change(chosen, reach_mm=reach)
-    n = sum(lines.n_on(k) for k in chosen)
-    length = sum(lines.all[k].length_mm for k in chosen)
-    widgets.caption(f"{length:.1f} mm long, {n:,} dots on it")
 
 
 def _draw_commands(widgets: Widgets, commands: Commands) -> None:
@@ -151,6 +166,19 @@ def _draw_row(widgets: Widgets, lines: Lines, commands: Commands) -> None:
             lines_mm=widgets.length("Line gap", row.lines_mm, "Between two lines."),
             angle_deg=widgets.length("Angle", row.angle_deg, "Of the lines, clockwise.", "°"),
         )
+    row = _draw_spacing(widgets, row)
+    tip = "Denser where the picture is darker."
+    lines.row = replace(row, by_tone=widgets.check("Follow the picture", row.by_tone, tip))
+    command = commands["line.row"]
+    if widgets.button("Lay the row", command.explained, width=-1.0, primary=lines.can_row,
+                      enabled=command.enabled):  # fmt: skip
+        command.run()
+    if not lines.can_row and place in (ALONG, EDGES):
+        widgets.caption("Choose a line first.")
+
+
+def _draw_spacing(widgets: Widgets, row: RowValues) -> RowValues:
+    """Draw how dots lie in a row, and what becomes of them."""
     how = widgets.segments("Spaced", ("By distance", "By number"), int(row.by_number),
                            ("At about this distance.", "So many in each row."))  # fmt: skip
     row = replace(row, by_number=how == 1)
@@ -168,14 +196,7 @@ def _draw_row(widgets: Widgets, lines: Lines, commands: Commands) -> None:
     row = replace(
         row, hold=HOLDS[widgets.segments("They are", labels, HOLDS.index(row.hold), tips)]
     )
-    tip = "Denser where the picture is darker."
-    lines.row = replace(row, by_tone=widgets.check("Follow the picture", row.by_tone, tip))
-    command = commands["line.row"]
-    if widgets.button("Lay the row", command.explained, width=-1.0, primary=lines.can_row,
-                      enabled=command.enabled):  # fmt: skip
-        command.run()
-    if not lines.can_row and place in (ALONG, EDGES):
-        widgets.caption("Choose a line first.")
+    return row
 
 
 def _draw_area(widgets: Widgets, lines: Lines) -> None:

@@ -8,13 +8,15 @@ from imgui_bundle import imgui
 
 from stippler.editor.commands import GROUPS, Command, Commands
 from stippler.editor.events import NO_MODS, KeyDown, Mods
+from stippler.ui.theme import TEXT_PX
 from stippler.ui.widgets import Widgets
 
+_SMALLEST = 0.6
 _RECENT_AFTER = "file.open"
 _RULED = {
     "file.save", "file.export_as", "file.quit", "edit.preferences", "selection.delete",
-    "selection.fix", "selection.relax", "work.relax", "work.reset", "tool.larger", "view.theme",
-    "panel.reset",
+    "selection.fix", "selection.relax", "work.relax", "work.reset", "tool.larger", "view.peek",
+    "view.turn_left", "view.reduce", "view.theme", "panel.reset",
 }  # fmt: skip
 """Commands that a line stands above."""
 
@@ -42,7 +44,8 @@ class MenuBar:
     ) -> None:
         """Draw the bar; run what is chosen."""
         scale = widgets.scale
-        imgui.push_style_var(imgui.StyleVar_.frame_padding, (9.0 * scale, 4.0 * scale))
+        share = _share([group for group, _ in commands.groups()], scale)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (9.0 * scale * share, 4.0 * scale))
         imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
         chosen: Command | None = None
         if imgui.begin_main_menu_bar():
@@ -50,7 +53,7 @@ class MenuBar:
             imgui.push_style_var(imgui.StyleVar_.window_padding, (8.0 * scale, 8.0 * scale))
             imgui.push_style_var(imgui.StyleVar_.item_spacing, (12.0 * scale, 7.0 * scale))
             for group, members in commands.groups():
-                if self._draw_title(widgets, group):
+                if self._draw_title(widgets, group, share):
                     chosen = _draw_items(widgets, members, recent) or chosen
                     imgui.end_menu()
             imgui.pop_style_var(2)
@@ -64,14 +67,20 @@ class MenuBar:
         if chosen is not None:
             chosen.run()
 
-    def _draw_title(self, widgets: Widgets, group: str) -> bool:
+    def _draw_title(self, widgets: Widgets, group: str, share: float) -> bool:
         """Draw a menu's title; return whether it is open, for a click after pointing, too."""
         if self._wanted == group:
             self._wanted = ""
             imgui.open_popup(group)
             imgui.set_nav_cursor_visible(True)
         was_open, pressed = self._open == group, imgui.is_mouse_clicked(imgui.MouseButton_.left)
+        imgui.push_font(None, TEXT_PX * share)
+        imgui.push_style_var(
+            imgui.StyleVar_.item_spacing, (12.0 * widgets.scale * share, 7.0 * widgets.scale)
+        )
         opened = imgui.begin_menu(group)
+        imgui.pop_style_var()
+        imgui.pop_font()
         if not opened and was_open and self._pointed == group and pressed:
             imgui.open_popup(group)  # a click on what pointing has opened is no wish to close it
             self._pointed = ""
@@ -82,6 +91,13 @@ class MenuBar:
             self._open = ""
         widgets.note(f"menu {group}")
         return opened
+
+
+def _share(titles: list[str], scale: float) -> float:
+    """Return how small titles have to be, that all of them stand in the bar."""
+    room = imgui.get_main_viewport().size.x - 24.0 * scale
+    wide = sum(imgui.calc_text_size(title).x + 25.0 * scale for title in titles)
+    return max(min(room / wide, 1.0), _SMALLEST)
 
 
 def _draw_items(

@@ -48,6 +48,24 @@ def draw_notice(widgets: Widgets, messages: Messages, canvas: Rect) -> None:
     imgui.pop_style_var()
 
 
+def draw_preparing(widgets: Widgets, share: float, canvas: Rect) -> None:
+    """Say, in the middle of an empty desk, what the first start takes its time for."""
+    x0, y0, x1, y1 = canvas
+    width = min(_INVITATION * widgets.scale, x1 - x0)
+    imgui.set_next_window_pos(((x0 + x1) / 2, (y0 + y1) / 2), imgui.Cond_.always, (0.5, 0.5))
+    imgui.set_next_window_size((width, 0.0))
+    imgui.begin("##preparing", None, (_FLAGS & ~_AUTO) | imgui.WindowFlags_.no_background)
+    imgui.push_font(widgets.fonts.heading, TEXT_PX * 1.2)
+    _write_centred(widgets, "Getting ready for the first time", widgets.theme.text)
+    imgui.pop_font()
+    told = "about half a minute, once on this computer"
+    _write_centred(widgets, told, widgets.theme.faint)
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, 0.0))
+    imgui.progress_bar(share, (-1.0, 5.0 * widgets.scale), "")
+    imgui.pop_style_var()
+    imgui.end()
+
+
 def draw_invitation(
     widgets: Widgets, commands: Commands, recent: list[Command], canvas: Rect
 ) -> None:
@@ -83,5 +101,10 @@ def draw_invitation(
 
 def _write_centred(widgets: Widgets, text: str, colour: Colour) -> None:
     room, left = imgui.get_content_region_avail().x, imgui.get_cursor_pos_x()
+    if imgui.calc_text_size(text).x > room:
+        imgui.push_text_wrap_pos(0.0)
+        imgui.text_colored((*colour, 0.85), text)
+        imgui.pop_text_wrap_pos()
+        return
     imgui.set_cursor_pos_x(left + (room - imgui.calc_text_size(text).x) / 2)
     imgui.text_colored((*colour, 0.85), text)

@@ -53,14 +53,8 @@ def draw_parameter(widgets: Widgets, about: Parameter, value: Any) -> Any:
 
 def draw_range(widgets: Widgets, about: Parameter, value: tuple[float, float]) -> Any:
     """Draw the two ends of a range; return them."""
-    low, high = value
-    widgets.label(about.label)
-    _, low, high = imgui.drag_float_range2(
-        f"##{about.label}", low, high, 0.002, *_RADII_MM, f"%.3f {about.unit}",
-        f"%.3f {about.unit}", imgui.SliderFlags_.always_clamp,
-    )  # fmt: skip
-    widgets.note(about.label)
-    widgets.tip(f"Smallest and largest, in {about.unit}. Drag; a double click types.")
+    tip = f"Smallest and largest, in {about.unit}."
+    low, high = widgets.span(about.label, value, _RADII_MM, about.unit, tip)
     return round(low, 4), round(max(low, high), 4)
 
 

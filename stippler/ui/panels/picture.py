@@ -44,10 +44,15 @@ def draw_picture(widgets: Widgets, session: Session, commands: Commands) -> None
         enabled=session.n_dots > 0,
     ):
         commands["file.export_as"].run()
-    session.tone = draw_parameter(widgets, TONE, session.tone)
-    typed = draw_parameter(widgets, WIDTH, session.width_mm)
+    is_blank = session.drawing is not None and session.source is None and not session.busy
+    why = "This page has no picture, so it has no effect now; it counts for the next picture."
+    with widgets.off(why if is_blank else ""):
+        session.tone = draw_parameter(widgets, TONE, session.tone)
+        typed = draw_parameter(widgets, WIDTH, session.width_mm)
     if math.isfinite(typed) and typed > 0:
         session.width_mm = min(typed, MAX_PAGE_MM)
+    if is_blank:
+        widgets.caption("Tone and width are a picture's; this page has none.")
 
 
 def _draw_name(widgets: Widgets, session: Session) -> None:
@@ -63,6 +68,8 @@ def _draw_name(widgets: Widgets, session: Session) -> None:
         widgets.caption(
             f"{columns:,} × {rows:,} px  ·  {reference.width_mm:.4g} × {reference.height_mm:.4g} mm"
         )
+        for note in session.notes:
+            widgets.caption(note)
     elif session.drawing is None or (session.busy and not session.relaxing):
         widgets.caption("being read …")
     else:

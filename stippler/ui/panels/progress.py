@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import math
+
 from imgui_bundle import imgui
 
 from stippler.editor.commands import Commands
 from stippler.editor.session import Session
 from stippler.jobs import work
-from stippler.ui.theme import ICON_PAUSE, ICON_PLAY, ICON_STOP
+from stippler.ui.theme import ICON_PAUSE, ICON_PLAY, ICON_RELAX, ICON_STOP
 from stippler.ui.widgets import Widgets
 
-HEIGHT = 114.0
-"""Of the section, in the theme's pixels."""
+HEIGHT, LOW = 114.0, 46.0
+"""Of the section, in the theme's pixels; and where there is little room."""
 
+_PREPARING_S = 25.0  # what a machine takes to prepare, more or less
 _STAGES = {
     work.READ: "reading the picture",
-    work.PREPARE: "preparing kernels (once)",
-    "first dots": "first dots",
-    "relax": "relaxing",
+    work.PREPARE: "getting ready for the first time, about half a minute",
+    "first dots": "placing dots",
+    "relax": "evening out",
     "tone": "matching the tone",
     "fill": "filling",
     "done": "done",
@@ -25,18 +28,63 @@ _STAGES = {
 _OUTCOMES = {"empty": "", "done": "done", "stopped": "stopped", "failed": "failed"}
 
 
-def draw_work(widgets: Widgets, session: Session, commands: Commands) -> None:
-    """Draw the section."""
+def draw_work(
+    widgets: Widgets, session: Session, commands: Commands, *, is_low: bool = False
+) -> None:
+    """Draw the section; where there is little room, in one line of signs."""
     imgui.separator()
+    if is_low:
+        _draw_line(widgets, session, commands)
+        return
     _draw_buttons(widgets, session, commands)
     _draw_progress(widgets, session)
+
+
+def _draw_line(widgets: Widgets, session: Session, commands: Commands) -> None:
+    side, paused = imgui.get_frame_height(), session.phase == "paused"
+    if widgets.button(
+        "Restart" if session.busy else "Start",
+        _start_tip(session, commands),
+        icon=ICON_PLAY,
+        width=imgui.get_content_region_avail().x - 3 * (side + widgets.gap),
+        primary=not session.busy or session.outdated,
+        enabled=session.source is not None or session.busy,
+    ):
+        commands["work.start"].run()
+    for name, icon, tip in (
+        ("work.pause", ICON_PLAY if paused else ICON_PAUSE, commands["work.pause"].explained),
+        ("work.stop", ICON_STOP, _STOP_TIP),
+        ("work.relax", ICON_RELAX, _relax_tip(commands)),
+    ):
+        imgui.same_line(0.0, widgets.gap)
+        command = commands[name]
+        imgui.begin_disabled(not command.enabled)
+        if widgets.icon_button(command.short, icon, tip):
+            command.run()
+        imgui.end_disabled()
+
+
+_STOP_TIP = "End the work; the dots that are there stay."
+
+
+def _start_tip(session: Session, commands: Commands) -> str:
+    if session.source is None and not session.busy:
+        return "Open a picture first: there is nothing to make dots of."
+    return f"{commands['work.start'].hint}: stipple the picture with the values above."
+
+
+def _relax_tip(commands: Commands) -> str:
+    return (
+        f"{commands['work.relax'].hint}: moves the dots that are there, by the steps above; "
+        "you can paint meanwhile."
+    )
 
 
 def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> None:
     label = "Restart" if session.busy else "Start"
     if widgets.button(
         label,
-        f"{commands['work.start'].hint}: stipple the picture with the values above.",
+        _start_tip(session, commands),
         icon=ICON_PLAY,
         width=-1.0,
         primary=not session.busy or session.outdated,
@@ -57,7 +105,7 @@ def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> Non
     imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Stop",
-        "End the work; the dots that are there stay.",
+        _STOP_TIP,
         icon=ICON_STOP,
         width=width,
         enabled=session.busy,
@@ -66,8 +114,7 @@ def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> Non
     imgui.same_line(0.0, widgets.gap)
     if widgets.button(
         "Relax all",
-        f"{commands['work.relax'].hint}: moves the dots that are there, by the iterations above; "
-        "you can paint meanwhile.",
+        _relax_tip(commands),
         width=width,
         enabled=session.paintable and session.n_dots > 0,
     ):
@@ -77,15 +124,26 @@ def _draw_buttons(widgets: Widgets, session: Session, commands: Commands) -> Non
 def _draw_progress(widgets: Widgets, session: Session) -> None:
     """Draw the bar and its line; they keep their room while there is nothing to tell."""
     if session.busy:
-        share = session.done / session.total if session.total else -imgui.get_time()
-        widgets.progress(share, _progress_text(session))
+        widgets.progress(progress_share(session), progress_text(session))
     elif session.outdated and session.n_dots:
         widgets.progress(0.0, "values changed; start to use them")
     else:
         widgets.progress(0.0, _OUTCOMES[session.phase])
 
 
-def _progress_text(session: Session) -> str:
+def progress_share(session: Session) -> float:
+    """Return how much of the stage is done; a share below 0 is unknown.
+
+    Getting ready goes by time: it counts in a few large steps, between which a bar would stand.
+    """
+    if session.stage == work.PREPARE:
+        waited = 1.0 - math.exp(-1.6 * session.stage_s / _PREPARING_S)
+        return max(waited, session.done / session.total if session.total else 0.0)
+    return session.done / session.total if session.total else -imgui.get_time()
+
+
+def progress_text(session: Session) -> str:
+    """Return what is being done, in a few words."""
     text = _STAGES.get(session.stage, session.stage)
     if session.stage == "relax":
         text = f"{text}, step {session.done:,} of {session.total:,}"

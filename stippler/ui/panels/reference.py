@@ -30,6 +30,14 @@ def draw_reference(widgets: Widgets, session: Session, look: Look, commands: Com
         imgui.same_line(0.0, widgets.gap)
         look.opacity = widgets.share("Opacity", look.opacity, "Of the picture under the dots.")
     look.dots_shown = widgets.check("Show dots", look.dots_shown, f"{commands['view.dots'].hint}.")
+
+
+def draw_tones(widgets: Widgets, session: Session, look: Look, commands: Commands) -> None:
+    """Draw how the picture is adjusted before dots are made of it."""
+    tip = "Brightness, contrast, gamma: these change the drawing."
+    if session.reference is None or not widgets.more("tones", "Lighter, darker, contrast", tip):
+        return
+    widgets.caption("These change the drawing: dots are made of the picture as it is here.")
     before = session.adjustment
     if session.reference is not None:
         _histogram.draw(widgets, session.reference, before)
@@ -38,19 +46,16 @@ def draw_reference(widgets: Widgets, session: Session, look: Look, commands: Com
         look.reference_shown = True  # else nothing would be seen to change
     reference = session.reference
     assert reference is not None
-    if session.adjustment != reference.adjustment:
-        if widgets.button(
-            "Use for the dots",
-            f"{commands['work.start'].hint}: makes the dots anew, from the adjusted picture. "
-            "Brushes go by it from then on.",
-            width=-1.0,
-            primary=True,
-            enabled=session.source is not None,
-        ):
-            look.dots_shown = True
-            commands["work.start"].run()
-    else:
-        widgets.caption("New dots come from the picture as it is adjusted here.")
+    if session.adjustment != reference.adjustment and widgets.button(
+        "Use for the dots",
+        f"{commands['work.start'].hint}: makes the dots anew, from the adjusted picture. "
+        "Brushes go by it from then on.",
+        width=-1.0,
+        primary=True,
+        enabled=session.source is not None,
+    ):
+        look.dots_shown = True
+        commands["work.start"].run()
 
 
 def _draw_adjustment(widgets: Widgets, now: Adjustment) -> Adjustment:

@@ -146,7 +146,10 @@ def _slider(
     label, what = names
     shown = shaping.value if shaping.holder == label else rest
     value = widgets.slider(label, shown, *limits, tip, form, flags)
-    if imgui.is_item_active() and value != shown:
+    if value != shown and not imgui.is_item_active():  # typed, or stepped
+        shaping.make(what, change(value))
+        return value
+    if value != shown:
         shaping.hold(label, value, change(value))
     if imgui.is_item_deactivated() and shaping.holder == label:
         made = shaping.value

@@ -93,16 +93,22 @@ def _draw_presets(widgets: Widgets, shelf: BrushShelf, tool: BrushTool) -> None:
         tool.brush = replace(brush, name=name[:60])
     width = (imgui.get_content_region_avail().x - 2 * widgets.gap) / 3
     if widgets.button(
-        "Copy brush", "Makes another brush of this type, kept for the next time.", width=width
+        "Copy",
+        "Makes another brush of this type, kept for the next time.",
+        name="Copy brush",
+        width=width,
     ):
         shelf.copy(kind)
     imgui.same_line(0.0, widgets.gap)
-    if widgets.button("Reset brush", "Tip and values as they were at first.", width=width):
+    if widgets.button(
+        "Reset", "Tip and values as they were at first.", name="Reset brush", width=width
+    ):
         shelf.reset(kind)
     imgui.same_line(0.0, widgets.gap)
     if widgets.button(
-        "Delete brush",
+        "Delete",
         "Forgets this brush; the command Restore deleted brush brings it back.",
+        name="Delete brush",
         width=width,
         enabled=len(names) > 1,
     ):

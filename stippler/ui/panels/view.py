@@ -31,6 +31,7 @@ def draw_view(widgets: Widgets, look: Look, view: View, commands: Commands) -> N
         commands["view.theme"].run()
     _draw_buttons(widgets, commands)
     _draw_turn(widgets, view, commands)
+    _draw_helps(widgets, look, commands)
     widgets.rule()
     _draw_lens(widgets, look, commands)
 
@@ -49,7 +50,6 @@ def _draw_buttons(widgets: Widgets, commands: Commands) -> None:
 
 def _draw_turn(widgets: Widgets, view: View, commands: Commands) -> None:
     camera, side = view.camera, imgui.get_frame_height()
-    next_row = imgui.get_cursor_pos_y() + imgui.get_frame_height_with_spacing()
     degrees = round(math.degrees(camera.rotation_rad), 1)
     typed = widgets.length(
         "Turned",
@@ -61,11 +61,13 @@ def _draw_turn(widgets: Widgets, view: View, commands: Commands) -> None:
     )
     if typed != degrees:
         view.turn_to(math.radians(typed))
+    next_row = imgui.get_item_rect_max().y + imgui.get_style().item_spacing.y
     for name, icon in (("view.turn_left", ICON_LEFT), ("view.turn_right", ICON_RIGHT)):
         imgui.same_line(0.0, widgets.gap)
         if widgets.icon_button(commands[name].label, icon, f"{commands[name].hint}: by 15°."):
             commands[name].run()
-    imgui.set_cursor_pos_y(next_row)  # square buttons would leave a larger gap
+    left = imgui.get_cursor_screen_pos().x
+    imgui.set_cursor_screen_pos((left, next_row))  # square buttons would leave a larger gap
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + widgets.indent - widgets.margin)
     flip = commands["view.flip"]
     if widgets.check("Flipped", camera.flip, f"{flip.hint}: see the page in a mirror.") != (
@@ -81,6 +83,21 @@ def _draw_turn(widgets: Widgets, view: View, commands: Commands) -> None:
         enabled=bool(camera.rotation_rad or camera.flip),
     ):
         upright.run()
+
+
+def _draw_helps(widgets: Widgets, look: Look, commands: Commands) -> None:
+    """Offer what stands around the page: rulers, navigator, the picture's half."""
+    for label, field, name in (
+        ("Rulers", "rulers_shown", "view.rulers"),
+        ("Navigator", "navigator_shown", "view.navigator"),
+        ("Picture beside the drawing", "split_shown", "view.split"),
+    ):
+        command = commands[name]
+        with widgets.off("" if command.enabled else "There is no picture open."):
+            value = widgets.check(label, getattr(look, field), command.explained)
+        setattr(look, field, value)
+        if label == "Rulers" and not widgets.is_narrow:
+            imgui.same_line(0.0, 2 * widgets.gap)
 
 
 def _draw_lens(widgets: Widgets, look: Look, commands: Commands) -> None:

@@ -101,7 +101,7 @@ class ExportDialog:
         update = self._worker.poll()
         if update is None:
             return False
-        if update.result is not None:
+        if update.result is not None and self._going is not None:
             self.look = update.result
         if update.failure is not None:
             self.problem = str(update.failure)
@@ -295,15 +295,29 @@ class ExportDialog:
             self._end()
             self._write(chosen, choices.options(), n_bytes)
 
-        if path.exists():
+        there = next((file for file in self._files(path) if file.exists()), None)
+        if there is not None:
             self._is_fresh = True  # where the question may come back to
-            self._dialogs.ask_replace(path, go)
+            self._dialogs.ask_replace(there, lambda _: go(path))
         else:
             go(path)
 
+    def _files(self, path: Path) -> list[Path]:
+        """Return what is written: of several pens a file for each."""
+        from stippler.export import files_of
+
+        form, sheet = self.choices.form, self.look.sheet
+        if form is None or sheet is None:
+            return [path]
+        return files_of(form, sheet, path)
+
     def _end(self) -> None:
+        """Close, and let go of what was found: it holds copies of the drawing."""
         self.is_open = self.preview.playing.runs = False
         self.problem = ""
+        if self._going is not None:
+            self._going.superseded = True
+        self._going, self._frozen, self.look = None, None, Look()
 
     # --- faults ---------------------------------------------------------------------------------
 

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from stippler.editor.export_choices import Choices
 from stippler.editor.numbers import parse_number
-from stippler.errors import StipplerError
+from stippler.errors import ParameterError, StipplerError
 from stippler.files.write.formats import PLATE
 from stippler.ui.popups.export_fields import draw_option, number_field, text_field
 from stippler.ui.widgets import Widgets
@@ -89,7 +89,12 @@ class PressSection:
     def _keep(self, choices: Choices) -> None:
         from stippler.files.presses import calibrated, keep_press
 
-        shares = [parse_number(text) / 100 for text in self._measured.replace(";", " ").split()]
+        try:
+            shares = [parse_number(text) / 100 for text in self._measured.replace(";", " ").split()]
+        except ParameterError:
+            raise ParameterError(
+                f"{self._measured!r} are no numbers", "measured", "give seven, such as 12 23 34 ..."
+            ) from None
         keep_press(calibrated(self._name.strip(), shares))
         choices.set("press", self._name.strip())
         self._is_open = False

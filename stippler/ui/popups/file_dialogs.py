@@ -23,6 +23,8 @@ OPENED = (
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # what the native dialogs need on Linux
 _LISTED = 400
 _WIDTH, _LIST_HEIGHT = 520.0, 240.0
+_AROUND, _LEAST_LIST = 190.0, 54.0  # what stands around the list; it is no lower than that
+_LOW = 330.0  # in a window that is no higher, title and endings are left out
 POPUP = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_title_bar
 
 
@@ -211,7 +213,9 @@ class Dialogs:
         center(_WIDTH * widgets.scale)
         if not imgui.begin_popup_modal(own.title, None, POPUP)[0]:
             return
-        widgets.heading(own.title)
+        is_low = imgui.get_main_viewport().size.y < _LOW * widgets.scale
+        if not is_low:
+            widgets.heading(own.title)
         if own.fresh:
             imgui.set_keyboard_focus_here()
             own.fresh = False
@@ -224,10 +228,11 @@ class Dialogs:
         widgets.note("path")
         chosen = Path(own.text).expanduser() if entered and own.text.strip() else None
         chosen = _draw_list(widgets, own) or chosen
-        widgets.caption(
-            own.problem or f"Endings: {', '.join(own.endings)}",
-            widgets.theme.alarm if own.problem else None,
-        )
+        if own.problem or not is_low:
+            widgets.caption(
+                own.problem or f"Endings: {', '.join(own.endings)}",
+                widgets.theme.alarm if own.problem else None,
+            )
         pressed, cancelled = _draw_verbs(widgets, own.verb)
         if pressed:
             chosen = Path(own.text).expanduser()
@@ -274,9 +279,11 @@ def _problem(own: _Own, path: Path) -> str:
 
 def center(width: float) -> None:
     """Put the next window in the middle."""
-    middle = imgui.get_main_viewport().get_center()
+    viewport = imgui.get_main_viewport()
+    middle, most = viewport.get_center(), (0.96 * viewport.size.x, 0.96 * viewport.size.y)
     imgui.set_next_window_pos((middle.x, middle.y), imgui.Cond_.always, (0.5, 0.5))
-    imgui.set_next_window_size((width, 0.0))
+    imgui.set_next_window_size((min(width, most[0]), 0.0))
+    imgui.set_next_window_size_constraints((0.0, 0.0), most)
 
 
 def _draw_verbs(widgets: Widgets, verb: str) -> tuple[bool, bool]:
@@ -297,7 +304,9 @@ def _draw_list(widgets: Widgets, own: _Own) -> Path | None:
     if own.listed is None or own.listed[0] != folder:
         own.listed = (folder, _contents(folder, own.endings))
     chosen = None
-    imgui.begin_child("##files", (0.0, _LIST_HEIGHT * widgets.scale), imgui.ChildFlags_.frame_style)
+    room = imgui.get_main_viewport().size.y - _AROUND * widgets.scale
+    height = min(_LIST_HEIGHT * widgets.scale, max(room, _LEAST_LIST * widgets.scale))
+    imgui.begin_child("##files", (0.0, height), imgui.ChildFlags_.frame_style)
     if folder.parent != folder and imgui.selectable("..", False)[0]:
         own.text = f"{folder.parent}/".replace("//", "/") + own.name
     for path in own.listed[1]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from stippler.jobs.work import Source
 
 EXPORT_DPI = 600.0
+_NAMED = 4  # of several files that were dropped
 
 
 class Filing:
@@ -49,6 +50,21 @@ class Filing:
         source = self._session.source
         folder = source.path.resolve().parent if source else Path.cwd()
         self._dialogs.ask_picture(folder, self.open)
+
+    def ask_reference(self) -> None:
+        """Ask for a picture to draw after by hand, and open it."""
+        source = self._session.source
+        folder = source.path.resolve().parent if source else Path.cwd()
+        self._dialogs.ask_picture(folder, self.open_reference)
+
+    def open_reference(self, path: Path) -> None:
+        """Open a picture to draw after by hand."""
+
+        def open_it() -> None:
+            self._session.open_reference(path)
+            self._kept.look.reference_shown = True
+
+        self.guard.then(f"Opening {shown(path.name)}", open_it)
 
     def open(self, path: Path) -> None:
         """Open a picture or a drawing."""
@@ -119,7 +135,7 @@ class Filing:
         if paths and not self.guard.is_open:
             self._dialogs.dismiss()
         if len(paths) > 1:
-            self._session.messages.say(f"one picture at a time; {paths[0].name} is opened", WARNING)
+            self._session.messages.say(_told_of(paths), WARNING)
         if paths:
             self.open(paths[0])
 
@@ -220,6 +236,17 @@ class Filing:
         from stippler.files.checks import calibration_sheet
 
         self.guard.then("The calibration sheet", lambda: self._session.show(calibration_sheet()))
+
+
+def _told_of(paths: tuple[Path, ...]) -> str:
+    """Say which of several files is opened, and which are not."""
+    others = [shown(path.name) for path in paths[1:]]
+    named = ", ".join(others[:_NAMED])
+    more = f" and {len(others) - _NAMED} more" if len(others) > _NAMED else ""
+    return (
+        f"one drawing is open at a time: {shown(paths[0].name)} is opened; {named}{more} "
+        f"{'is' if len(others) == 1 else 'are'} not"
+    )
 
 
 def _first_path(source: Source | None) -> Path:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 from imgui_bundle import imgui
 
 from stippler.drawing.drawing import MAX_PAGE_MM, Page
+from stippler.ui.popups.file_dialogs import center
 from stippler.ui.widgets import Widgets
 
 _TITLE = "New page"
+_WIDTH = 320.0
 _SIZES = (("A4", 210.0, 297.0), ("A5", 148.0, 210.0), ("A6", 105.0, 148.0))
 
 
@@ -32,9 +33,7 @@ class NewPage:
         if self._wanted:
             imgui.open_popup(_TITLE)
             self._wanted = False
-        center = imgui.get_main_viewport().get_center()
-        imgui.set_next_window_pos(center, imgui.Cond_.appearing, (0.5, 0.5))
-        imgui.set_next_window_size((300.0 * widgets.scale, 0.0))
+        center(_WIDTH * widgets.scale)
         self.is_open = imgui.begin_popup_modal(_TITLE, None, imgui.WindowFlags_.no_resize)[0]
         if self.is_open:
             self._draw_fields(widgets)
@@ -70,5 +69,4 @@ class NewPage:
 
 
 def _length(widgets: Widgets, label: str, value: float) -> float:
-    typed = widgets.length(label, value, "In mm.")
-    return min(max(typed, 1.0), MAX_PAGE_MM) if math.isfinite(typed) else value
+    return widgets.length(label, value, "On paper.", low=1.0, high=MAX_PAGE_MM)

@@ -27,7 +27,9 @@ class Palette:
     kept : Preferences
         Knows which commands were run last.
     more : callable
-        Commands that come and go: recent pictures.
+        Commands that come and go: recent pictures, controls of panels.
+    values : callable
+        Commands that a text with a number at its end tells: "gamma 1.2".
 
     Attributes
     ----------
@@ -35,13 +37,23 @@ class Palette:
         What is listed, the best first.
     """
 
-    def __init__(self, kept: Preferences, more: Callable[[], list[Command]]) -> None:
-        self._kept, self._more = kept, more
+    def __init__(
+        self,
+        kept: Preferences,
+        more: Callable[[], list[Command]],
+        values: Callable[[str], list[Command]] = lambda _: [],
+    ) -> None:
+        self._kept, self._more, self._values = kept, more, values
         self._wanted = False
         self._typed, self._at = "", 0
         self._follow = False  # the list scrolls to what the arrows have chosen
         self.is_open = False
         self.found: list[Command] = []
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether it opens in this frame."""
+        return self._wanted
 
     def ask(self) -> None:
         """Open the palette in the next frame."""
@@ -120,14 +132,16 @@ class Palette:
         """Return the commands that fit what is typed, the best first."""
         every = [*commands, *self._more()]
         if not self._typed.strip():
+            every = [one for one in every if not one.name.startswith("field.")]
             last = {name: k for k, name in enumerate(self._kept.ran)}
             return sorted(every, key=lambda command: last.get(command.name, len(last)))
+        typed = self._values(self._typed)
         scored = [(_score(self._typed, command), command) for command in every]
         fits = [(score, command) for score, command in scored if score is not None]
         fits.sort(key=lambda fit: -fit[0])
         best = fits[0][0] if fits else 0.0
         least = min(_WORST * best, best - _CLOSE)
-        return [command for score, command in fits if score >= least]
+        return typed + [command for score, command in fits if score >= least]
 
 
 def _score(typed: str, command: Command) -> float | None:

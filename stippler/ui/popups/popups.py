@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from stippler.editor.commands import Commands, Key
+from stippler.editor.commands import Command, Commands, Key
 from stippler.editor.events import KeyDown
 from stippler.editor.keymap import save_keys
 from stippler.editor.messages import WARNING
 from stippler.editor.session import Session
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import StipplerError
+from stippler.ui.field_commands import FieldCommands
 from stippler.ui.popups.context import ContextPalette
 from stippler.ui.popups.export_dialog import ExportDialog
 from stippler.ui.popups.file_dialogs import Dialogs
@@ -63,8 +64,9 @@ class Popups:
         )  # fmt: skip
         self.save_failed = SaveFailed(session, lambda is_copy: self.filing.save_as(is_copy=is_copy))
         self.new_page = NewPage(self.filing.begin)
+        self.field_commands: FieldCommands | None = None
+        self.palette = Palette(kept, self._more_commands, self._valued_commands)
         self.scale = ScaleDrawing(session)
-        self.palette = Palette(kept, self.filing.recent)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
         self.context = ContextPalette(toolbox)
@@ -113,6 +115,13 @@ class Popups:
         guarded("the palette at the pointer", lambda: self.context.draw(widgets, commands))
         guarded("the palette", lambda: self.palette.draw(widgets, commands))
         guarded("the shortcuts", lambda: self.sheet.draw(widgets, commands))
+
+    def _more_commands(self) -> list[Command]:
+        fields = self.field_commands.all() if self.field_commands is not None else []
+        return [*self.filing.recent(), *fields]
+
+    def _valued_commands(self, typed: str) -> list[Command]:
+        return self.field_commands.values(typed) if self.field_commands is not None else []
 
     def close(self) -> None:
         """Free every GL object."""

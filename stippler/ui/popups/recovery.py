@@ -14,6 +14,7 @@ from imgui_bundle import imgui
 from stippler.editor.session import Session
 from stippler.errors import StipplerError
 from stippler.names import shown
+from stippler.ui.popups.file_dialogs import center
 from stippler.ui.widgets import Widgets
 
 if TYPE_CHECKING:
@@ -99,9 +100,7 @@ class RecoveryWindow:
         if self._wanted:
             imgui.open_popup(_TITLE)
             self._wanted = False
-        center = imgui.get_main_viewport().get_center()
-        imgui.set_next_window_pos(center, imgui.Cond_.appearing, (0.5, 0.5))
-        imgui.set_next_window_size((_WIDTH * widgets.scale, 0.0))
+        center(_WIDTH * widgets.scale)
         self.is_open = imgui.begin_popup_modal(_TITLE, None, imgui.WindowFlags_.no_resize)[0]
         if not self.is_open:
             return

@@ -7,10 +7,12 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-from stippler.editor.events import Event, Gone, KeyDown
+from stippler.editor.events import Event, Gone, KeyDown, KeyUp
 from stippler.editor.keymap import is_modifier
 from stippler.ui import theme
+from stippler.ui.fields import Fields
 from stippler.ui.look import Look
+from stippler.ui.number_control import Numbers
 from stippler.ui.theme import Theme
 from stippler.ui.window.imgui_input import feed
 from stippler.ui.window.window import Window
@@ -20,6 +22,11 @@ _NAVIGATES = frozenset(
      "page_down", "home", "end", "-", ".", ",", *"0123456789")
 )  # fmt: skip
 """Keys that are a panel's while one of its controls has the focus of the keyboard."""
+_EDITS = frozenset(
+    ("a", "c", "v", "x", "y", "z", "left", "right", "home", "end", "backspace", "delete", "insert",
+     "left_control", "right_control", "left_alt", "right_alt", "left_shift", "right_shift")
+)  # fmt: skip
+"""Keys that, with Ctrl, edit the text of a field."""
 
 
 def _context() -> imgui.internal.Context:
@@ -35,6 +42,10 @@ class Gui:
     Attributes
     ----------
     fonts : Fonts
+    numbers : Numbers
+        Which number of the panels has the keyboard.
+    fields : Fields
+        The controls that panels have.
     escape_level : int
         How many popups are open in a frame in which Esc is pressed, of which it is for the topmost;
         else 0.
@@ -47,6 +58,9 @@ class Gui:
         self._theme: Theme | None = None
         self._scale = 0.0
         self.escape_level = 0
+        self._holds_enter = False  # for a number that a chord has ended
+        self.numbers = Numbers()
+        self.fields = Fields()
         self._context = imgui.create_context()
         io = imgui.get_io()
         io.set_ini_filename("")
@@ -119,6 +133,8 @@ class Gui:
 
         Keys for the canvas are kept from ImGui, or arrows would walk through panels.
         """
+        if self.numbers.take(event, is_typing=self.wants_keys):
+            return isinstance(event, KeyDown)
         if isinstance(event, KeyDown):
             if not (self.wants(event) or is_modifier(event.key)):
                 return False
@@ -126,6 +142,19 @@ class Gui:
                 self.escape_level = _context().open_popup_stack.size()
         feed(event, self._window.ratio)
         return isinstance(event, KeyDown)
+
+    def ends_number(self, event: Event) -> bool:
+        """Whether a chord is to count after the number that is typed: that is entered, then."""
+        if not (isinstance(event, KeyDown) and self.numbers.open) or event.key in _EDITS:
+            return False
+        if not (event.mods.ctrl or event.mods.alt) or _context().open_popup_stack.size():
+            return False
+        if self.numbers.is_active:
+            feed(KeyDown("enter"), self._window.ratio)
+            self._holds_enter = True
+        else:
+            self.numbers.is_entered = True
+        return True
 
     def wants(self, event: KeyDown) -> bool:
         """Return whether a key is for panels: a field, a list or menu, or what has the focus."""
@@ -144,6 +173,7 @@ class Gui:
         io.display_size = imgui.ImVec2(*self._window.size_units)
         io.display_framebuffer_scale = imgui.ImVec2(*self._window.ratio)
         imgui.new_frame()
+        self.numbers.begin(over_panels=self.wants_pointer)
         failure: Exception | None = None
         try:
             draw_ui()
@@ -152,6 +182,9 @@ class Gui:
         finally:
             imgui.end_frame()
         self.escape_level = 0
+        if self._holds_enter:
+            self._holds_enter = False
+            feed(KeyUp("enter"), self._window.ratio)
         imgui.render()
         return failure
 

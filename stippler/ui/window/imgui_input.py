@@ -62,6 +62,7 @@ def feed(event: Event, ratio: tuple[float, float]) -> None:
             _hold(event.mods)
             io.add_mouse_button_event(_BUTTONS[event.button], isinstance(event, Pressed))
         case Scrolled():
+            _hold(event.mods)
             io.add_mouse_wheel_event(event.dx, event.dy)
         case KeyDown() | KeyUp():
             down = isinstance(event, KeyDown)

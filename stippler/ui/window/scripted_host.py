@@ -174,7 +174,8 @@ class Host:
             x0, low, x1, high = self._editor.widgets.rooms.get(label, (0.0, -1e9, 0.0, 1e9))
             if low <= y <= high:
                 return
-            self.scroll(1.0 if y < low else -1.0, ((x0 + x1) / 2, (low + high) / 2))
+            margin = min(4.0, (x1 - x0) / 2)  # over a number the wheel would step that
+            self.scroll(1.0 if y < low else -1.0, (x0 + margin, (low + high) / 2))
 
     def drop(self, *paths: Path) -> None:
         """Drop files on the window."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import math
 import os
 import threading
 from collections.abc import Iterator
@@ -27,6 +28,7 @@ from stippler.units import px_per_mm
 
 _NULL_PLATFORM = 0x00060005  # GLFW_PLATFORM_NULL, which python's glfw does not name
 _PLAUSIBLE_PX_PER_MM = (2.0, 30.0)  # 50 to 760 dpi; screens that tell less or more do not know
+_ASK_AGAIN_S = 1.0
 _NO_DISPLAY = "start it inside a desktop session, or draw without a window: stippler render"
 _NO_GL = (
     "install a graphics driver with OpenGL 3.3 (Debian, Ubuntu: apt install libgl1 "
@@ -77,6 +79,7 @@ class Window:
     ) -> None:
         self._errors: list[str] = []
         self._title = title
+        self._px_per_mm, self._asked_s = 1.0, -math.inf
         self._given_ratio = ratio if offscreen else 0.0
         # The null platform's waiting does not wait.
         self._woken = threading.Event() if offscreen else None
@@ -240,7 +243,16 @@ class Window:
 
     @property
     def px_per_mm(self) -> float:
-        """Pixels a millimetre of the screen; 96 dpi times the scale where it does not tell."""
+        """Pixels a millimetre of the screen; 96 dpi times the scale where it does not tell.
+
+        Every frame asks; the system is asked once a second.
+        """
+        now = self.now_s
+        if now - self._asked_s > _ASK_AGAIN_S:
+            self._px_per_mm, self._asked_s = self._told_px_per_mm(), now
+        return self._px_per_mm
+
+    def _told_px_per_mm(self) -> float:
         monitor = glfw.get_primary_monitor()
         if monitor:
             width_mm, _ = glfw.get_monitor_physical_size(monitor)

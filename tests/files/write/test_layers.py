@@ -232,3 +232,68 @@ def test_layers_by_polarity_are_ink_and_paper(tmp_path):
     one = drawing()
     assert len(save(one, tmp_path / "a.gcode")) == 3
     assert len(save(one, tmp_path / "b.gcode", layers="polarity")) == 1
+
+
+def test_files_of_several_pens_are_written_all_or_none(tmp_path):
+    """The first took its name, and the second was given up."""
+    (tmp_path / "a-1-page.gcode").write_text("precious")
+    told = []
+
+    def show(n_bytes):
+        told.append(n_bytes)
+        if n_bytes > 1500:  # the first is there
+            raise OutputError("was given up", "a")
+
+    with pytest.raises(OutputError, match="given up"):
+        save(drawing(), tmp_path / "a.gcode", show=show)
+    assert len(told) > 3
+    assert [path.name for path in tmp_path.iterdir()] == ["a-1-page.gcode"]
+    assert (tmp_path / "a-1-page.gcode").read_text() == "precious"
+    assert len(save(drawing(), tmp_path / "a.gcode")) == 3
+
+
+def test_a_tiff_can_be_given_up_before_its_first_byte(tmp_path):
+    """All of it was packed first, and nobody asked meanwhile."""
+
+    def show(n_bytes):
+        assert n_bytes == 0
+        raise OutputError("was given up", "a")
+
+    (tmp_path / "a.tif").write_text("precious")
+    with pytest.raises(OutputError, match="given up"):
+        save(drawing(), tmp_path / "a.tif", dpi=2400, show=show)
+    assert (tmp_path / "a.tif").read_text() == "precious"
+
+
+def test_a_line_that_is_sought_can_be_given_up(tmp_path):
+    one = Drawing.blank(PAGE)
+    one.dots = Dots.round(np.random.default_rng(0).uniform(1, 24, (20_000, 2)), 0.05)
+    asked = []
+
+    def show(n_bytes):
+        asked.append(n_bytes)
+        if len(asked) > 2:
+            raise OutputError("was given up", "a")
+
+    with pytest.raises(OutputError, match="given up"):
+        save(one, tmp_path / "a.svg", one_line="open", show=show)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_hidden_areas_are_no_part_of_the_preview_nor_of_faults():
+    from stippler.editor.export_choices import Choices
+    from stippler.jobs.export_look import Asked, Look, Sight, look
+
+    one = drawing()
+    choices = Choices("a.svg")
+    choices.least_dot_mm = 5.0
+    found = []
+    for hidden in (False, True):
+        one.areas[4] = Area("wing", one.areas[4].outline_mm, hidden=hidden)
+        asked = Asked(
+            one, hidden, choices.form, choices.values(), choices.process(), Sight(200, 100)
+        )
+        *_, seen = look(asked, Look(), lambda: False)
+        found.append((len(seen.findings.too_small), int((255 - seen.picture).sum())))
+    assert [n for n, _ in found] == [4, 2]
+    assert found[1][1] < 0.6 * found[0][1]

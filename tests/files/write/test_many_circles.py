@@ -73,3 +73,24 @@ def test_their_files_are_smaller(tmp_path):
     sheet = Sheet(150, 150, (Layer("page", some),))
     assert written(sheet, tmp_path / "a.svg").stat().st_size < 40 * 20_000
     assert written(sheet, tmp_path / "a.svgz").stat().st_size < 10 * 20_000
+
+
+@pytest.mark.parametrize("kind", ["round", "smooth", "rough"])
+def test_more_dots_than_readers_take_share_paths(tmp_path, monkeypatch, kind):
+    """resvg and librsvg refuse a million elements; the picture is the same."""
+    from stippler.files.write import svg
+
+    sheet = sheet_of(2500, 0.2, 0.3)
+    dots = sheet.layers[0].dots
+    if kind != "round":
+        dots.elongation[:] = 1.5
+    if kind == "rough":
+        dots.roughness[:] = np.linspace(0.01, 1, len(dots))
+    usual = written(sheet, tmp_path / "a.svg")
+    monkeypatch.setattr(svg, "MOST_ELEMENTS", 2000)
+    shared = written(sheet, tmp_path / "b.svg")
+    n_elements = shared.read_bytes().count(b"<path") + shared.read_bytes().count(b"<circle")
+    assert n_elements < 500
+    both = [consumers.resvg(path, 150, 4) for path in (usual, shared)]
+    assert both[1].sum() == pytest.approx(both[0].sum(), rel=0.003)
+    assert np.abs(consumers.averaged(both[0] - both[1], 16)).max() < 0.02
