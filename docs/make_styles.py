@@ -27,7 +27,7 @@ from stippler.stippling.stipple import stages  # noqa: E402
 SIZE_MM = (44.0, 30.0)
 FIELD_PX_MM = 16
 SHOWN_PX_MM = 9.0
-SWATCH_PX = (132, 90)
+SWATCH_PX = (220, 150)
 COLUMNS, GAP, LABEL = 3, 26, 34
 
 _HEAD = """# Styles

@@ -55,6 +55,7 @@ def edit_areas(
     edit: Callable[[PlanarMap], Outcome],
     style: int | None = None,
     names: Mapping[int, str] | None = None,
+    also: Callable[[Outcome], None] | None = None,
 ) -> Outcome:
     """Edit areas as one step of the history.
 
@@ -66,6 +67,8 @@ def edit_areas(
         Of new areas; else that of the area in whose place they are.
     names : mapping of int to str, optional
         Of new areas.
+    also : callable, optional
+        Changes the document further within the same step.
 
     Raises
     ------
@@ -82,6 +85,8 @@ def edit_areas(
     document.begin(label)
     try:
         _take(document, before, outcome, style, names or {})
+        if also is not None:
+            also(outcome)
     except BaseException:
         document.cancel()
         raise
@@ -119,11 +124,28 @@ def current_map(document: Document) -> PlanarMap:
     known = _last.get(document)
     drawing = document.drawing
     borders: Mapping[int, Arc] = drawing.table(records.BORDER)
+    if not borders:
+        return _borderless_map(document)
     if known is not None and len(borders) == len(known.arcs):
         fresh = known.next_area == drawing.first_free(records.AREA)
         if fresh and all(borders.get(k) is arc for k, arc in known.arcs.items()):
             return known
     _last[document] = made = map_of(drawing)
+    return made
+
+
+_borderless: WeakKeyDictionary[Document, tuple[object, PlanarMap]] = WeakKeyDictionary()
+
+
+def _borderless_map(document: Document) -> PlanarMap:
+    """Return the map of a drawing that has no borders yet."""
+    drawing = document.drawing
+    key = (drawing.page, dict(drawing.areas), drawing.first_free(records.AREA))
+    known = _borderless.get(document)
+    if known is not None and known[0] == key:
+        return known[1]
+    made = map_of(drawing)
+    _borderless[document] = (key, made)
     return made
 
 

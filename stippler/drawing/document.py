@@ -59,6 +59,7 @@ class Document:
         self._replayed: Edit = Edit("")
         self._replayed_step: Step | None = None
         self._locked: NDArray[np.int32] | None = None  # areas
+        self._areas_at = 0  # when they last changed
         self._note_locks()
         drawing.dots = self._store.dots
         self._find_by_place()
@@ -303,10 +304,23 @@ class Document:
         """
         if self._run is None:
             return 0
+        if self._areas_at > self._run.base:
+            position_mm = self._kept_in_areas(position_mm)
         n, furthest_mm = self._run.move(self._store, position_mm, self._locked)
         self._index.drift(furthest_mm)
         self.changes.note_places()
         return n
+
+    def _kept_in_areas(self, result: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return a run's places without those that areas drawn since it began forbid."""
+        assert self._run is not None
+        rows = self._store.rows(self._run.ids)
+        wrong = rows >= 0
+        area = self.partition.area_at(np.ascontiguousarray(result[wrong], np.float64))
+        wrong[wrong] = area != self.dots.area[rows[wrong]]
+        out = result.copy()
+        out[wrong] = self.dots.position_mm[rows[wrong]]
+        return out
 
     def merge_radii(self, radius_mm: NDArray[np.float32]) -> int:
         """Give the dots of the run a result's radii, as `merge` does; return how many got one."""
@@ -469,6 +483,7 @@ class Document:
         self.changes.note_record(kind, i)
         if kind == records.AREA:
             self._partition = None
+            self._areas_at = self.changes.now
             self._note_locks()
         elif kind == records.PAGE:
             self._find_by_place()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from stippler.drawing import records
@@ -14,12 +14,16 @@ from stippler.editor.area_jobs import AreaJobs
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.session import Session
+from stippler.editor.tools.grow_tool import GrowTool
+from stippler.editor.tools.picture_source import PictureSource
+from stippler.editor.tools.proposal_tool import ProposalTool
 from stippler.errors import GeometryError, StipplerError
 from stippler.names import shown
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
     from stippler.drawing.planar.edits import Outcome
+    from stippler.drawing.planar.path import Path
     from stippler.drawing.planar.planar_map import PlanarMap
 
 Edit = Callable[["PlanarMap"], "Outcome"]
@@ -35,11 +39,17 @@ class AreaActs:
         What takes longer than a frame.
     tolerance_mm : float
         What `simplify` may move a border by.
+    dark_level : float
+        What is darker than this is a dark part, even if dots could draw it.
     """
 
     def __init__(self, session: Session, painting: Painting, jobs: AreaJobs) -> None:
         self.session, self._painting, self.jobs = session, painting, jobs
-        self.tolerance_mm = 0.2
+        self.tolerance_mm, self.dark_level = 0.2, 0.9
+        source = PictureSource(jobs, self.lay)
+        for tool in painting.toolbox.tools:
+            if isinstance(tool, GrowTool | ProposalTool):
+                tool.source = source
 
     @property
     def choice(self) -> AreaChoice:
@@ -194,9 +204,54 @@ class AreaActs:
         self._warn("choose an area first, in the list or on the canvas with the tool Nodes")
         return False
 
+    # --- from the picture ---------------------------------------------------------------------
+
+    def lay(
+        self,
+        label: str,
+        outlines: Sequence[Sequence[Path]],
+        name: str = "part",
+        also: Callable[[Outcome], None] | None = None,
+    ) -> None:
+        """Make areas of outlines, each a list of rings, beside everything else, as one step."""
+        from stippler.drawing.area_edits import current_map, held_areas
+        from stippler.editor.area_files import Imported, lay_job
+
+        document = self.document
+        if document is None or not outlines:
+            return
+        before, held = current_map(document), held_areas(document.drawing)
+
+        def take(found: Imported) -> None:
+            self._take_map(document, label, found.before, found.map, found.names, also)
+
+        self.jobs.start("making areas", lay_job(before, outlines, held, name), take)
+
+    def dark_parts(self) -> None:
+        """Make inverse areas of what is too dark for the dots of the page's style."""
+        from stippler.editor.dark_parts import dark_outlines, inverse_style
+
+        document = self.document
+        reference = self.session.reference
+        if document is None or reference is None:
+            self._warn("open a picture first: dark parts are found by its tones")
+            return
+        outlines = dark_outlines(document.drawing, reference, self.dark_level)
+        if not outlines:
+            self.session.messages.say("nothing is as dark as that", INFO)
+            return
+
+        def also(outcome: Outcome) -> None:
+            style = inverse_style(document)
+            for k in outcome.made:
+                area = document.drawing.areas[k]
+                document.set(records.AREA, k, replace(area, style=style))
+
+        self.lay("Dark parts", outlines, "dark part", also)
+
     # --- files --------------------------------------------------------------------------------
 
-    def import_outlines(self, path: Path) -> None:
+    def import_outlines(self, path: FilePath) -> None:
         """Make areas of the outlines in a file, beside everything else, as one step."""
         from stippler.drawing.area_edits import current_map, held_areas
         from stippler.editor.area_files import Imported, import_job
@@ -216,7 +271,7 @@ class AreaActs:
         job = import_job(path, before, size_mm, held)
         self.jobs.start(f"reading {shown(path.name)}", job, take)
 
-    def export_outlines(self, path: Path) -> None:
+    def export_outlines(self, path: FilePath) -> None:
         """Write the outlines of all areas to a file."""
         from stippler.editor.area_files import write_areas
 
@@ -237,6 +292,7 @@ class AreaActs:
         before: PlanarMap,
         after: PlanarMap,
         names: Mapping[int, str],
+        also: Callable[[Outcome], None] | None = None,
     ) -> None:
         """Use a map that was worked out meanwhile, if the areas are still those it began with."""
         from stippler.drawing.area_edits import current_map, edit_areas
@@ -249,7 +305,7 @@ class AreaActs:
         gone = tuple(k for k in before.areas if k not in set(after.areas))
         outcome = Outcome(after, made, gone)
         try:
-            edit_areas(of, label, lambda _: outcome, names=names)
+            edit_areas(of, label, lambda _: outcome, names=names, also=also)
         except GeometryError as error:
             self._warn(str(error))
             return

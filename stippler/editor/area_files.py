@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
@@ -12,6 +12,7 @@ from stippler.errors import GeometryError, OutputError, StipplerError
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
+    from stippler.drawing.planar.path import Path
     from stippler.drawing.planar.planar_map import PlanarMap
     from stippler.files.read.outlines import Shape
 
@@ -83,6 +84,22 @@ def _laid(
     if not names:
         raise StipplerError("holds no outline that makes an area", "file", "; ".join(notes[-2:]))
     yield Step(1.0, Imported(before, after, names, tuple(notes)))
+
+
+def lay_job(
+    before: PlanarMap, outlines: Sequence[Sequence[Path]], locked: list[int], name: str
+) -> Callable[[], Iterator[Step]]:
+    """Return a job that lays outlines over a map, each a list of rings."""
+
+    def job() -> Iterator[Step]:
+        from stippler.files.read.outlines import Shape
+
+        shapes = [
+            Shape(f"{name} {n}", tuple(rings), "even-odd") for n, rings in enumerate(outlines, 1)
+        ]
+        yield from _laid(before, shapes, locked, [])
+
+    return job
 
 
 def _alike(a: tuple[float, float], b: tuple[float, float]) -> bool:

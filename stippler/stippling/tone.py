@@ -194,9 +194,7 @@ def shortfall(
         notes = ("no dot of this size fits the ink: ask for more, or for smaller ones",)
     elif wanted is not None and n < 0.99 * wanted:
         notes = (f"only {n:,} of {wanted:,} dots fit at the smallest size",)
-    levels = np.linspace(0.0, 1.0, 257)
-    drawn = np.interp(rule.density(levels) * np.pi * rule.radius_max**2, _INK, _COVERAGE)
-    lack = np.where(levels - drawn > 0.004, levels - drawn, 0.0)
+    levels, lack = _lack(rule)
     if not lack.any():
         return Shortfall(notes=notes)
     missing = np.interp(darkness, levels, lack)
@@ -207,6 +205,20 @@ def shortfall(
     y = np.flatnonzero(where.any(axis=1))
     box = (x[0] * pixel_mm, y[0] * pixel_mm, (x[-1] + 1) * pixel_mm, (y[-1] + 1) * pixel_mm)
     return Shortfall(float(where.mean()), float(missing[where].mean()), box, notes)
+
+
+def _lack(rule: DotRule) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return levels of darkness, and how much of each the largest dots cannot draw."""
+    levels = np.linspace(0.0, 1.0, 257)
+    drawn = np.interp(rule.density(levels) * np.pi * rule.radius_max**2, _INK, _COVERAGE)
+    return levels, np.where(levels - drawn > 0.004, levels - drawn, 0.0)
+
+
+def darkest_drawn(rule: DotRule) -> float:
+    """Return the darkness above which a rule's dots fall short; 1 if they never do."""
+    levels, lack = _lack(rule)
+    short = np.flatnonzero(lack)
+    return float(levels[max(short[0] - 1, 0)]) if len(short) else 1.0
 
 
 def too_small_to_print(radius_mm: NDArray[np.floating]) -> tuple[str, ...]:

@@ -352,7 +352,7 @@ class Editor:
         draw_picture(self.widgets, self.session, self.commands)
         draw_tones(self.widgets, self.session, self.look, self.commands)
         self.widgets.rule()
-        draw_dots(self.widgets, self.session)
+        draw_dots(self.widgets, self.session, self.commands)
         imgui.end_child()
         draw_work(self.widgets, self.session, self.commands, is_low=is_low)
 

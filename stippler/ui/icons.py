@@ -197,6 +197,20 @@ def _bucket(p: Pen) -> None:
     p.line((0.38, 0.06), (0.5, 0.16))
 
 
+def _grow(p: Pen) -> None:
+    p.line((0.3, 0.56), (0.4, 0.44), (0.5, 0.58), (0.6, 0.44), (0.7, 0.56))
+    for k in range(10):
+        a, b = k * math.tau / 10, (k + 0.55) * math.tau / 10
+        p.line(*((0.5 + 0.42 * math.cos(t), 0.5 + 0.38 * math.sin(t)) for t in (a, b)))
+
+
+def _proposals(p: Pen) -> None:
+    p.line((0.1, 0.12), (0.9, 0.12), (0.9, 0.88), (0.1, 0.88), (0.1, 0.12))
+    p.line((0.1, 0.5), (0.36, 0.42), (0.52, 0.6), (0.9, 0.46))
+    p.line((0.36, 0.42), (0.48, 0.12))
+    p.line((0.52, 0.6), (0.44, 0.88))
+
+
 def _pattern(p: Pen) -> None:
     for y, shift in ((0.14, 0.0), (0.38, 0.2), (0.62, 0.0), (0.86, 0.2)):
         p.line((0.1, y), (0.9, y))
@@ -235,6 +249,8 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
     "warp": _warp,
     "nodes": _nodes,
     "area": _area,
+    "grow": _grow,
+    "proposals": _proposals,
     "knife": _knife,
     "bucket": _bucket,
 }

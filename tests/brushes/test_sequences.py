@@ -57,6 +57,24 @@ def some_drawing():
     return drawing
 
 
+def without_stroke(before, painted, middle):
+    """Return the dots as they are without a stroke during which a result came.
+
+    Those that the stroke had touched are as before it; the others as the result left them.
+    """
+    wanted = before.copy()
+    for row, i in enumerate(before.id):
+        now = np.flatnonzero(painted.id == i)
+        if len(now) and all(
+            np.array_equal(getattr(before, name)[row], getattr(painted, name)[now[0]])
+            for name in NAMES
+        ):
+            at = np.flatnonzero(middle.id == i)[0]
+            for name in NAMES:
+                getattr(wanted, name)[row] = getattr(middle, name)[at]
+    return wanted
+
+
 class PaintingMachine(RuleBasedStateMachine):
     """Nothing a person did is overwritten, and undoing everything gives the start to the bit."""
 
@@ -130,13 +148,14 @@ class PaintingMachine(RuleBasedStateMachine):
         stroke = Stroke(self.document, brush, PointerSample(*path[0]), self.n_strokes)
         for k, at in enumerate(path[1:]):
             stroke.follow(PointerSample(*at, t=0.1 * (k + 1)))
-        earlier, middle = set(self.by_hand), before
+        earlier, middle, wanted = set(self.by_hand), before, before
         if late and self.run_size > 0:
             self.note_hand(before)  # what the hand did so far, or it could not be told afterwards
-            mine, places = self.by_hand - earlier, self.places(self.by_hand)
+            places, painted = self.places(self.by_hand), self.document.dots.copy()
             self.merge(self.n_strokes)
             assert np.array_equal(self.places(self.by_hand), places)
             middle = self.document.dots.copy()
+            wanted = without_stroke(before, painted, middle)
         if ends == "cancel":
             stroke.cancel()
             self.by_hand = earlier
@@ -145,12 +164,8 @@ class PaintingMachine(RuleBasedStateMachine):
             self.note_hand(middle)
         if kind not in ("fix", "unfix"):
             self.check_fixed(fixed)
-        if ends == "cancel" and middle is before:
-            assert same(self.document.dots, before)
-        elif ends == "cancel":
-            touched = np.isin(before.id, list(mine))
-            rows = self.document.rows(before.id[touched])
-            assert same(self.document.dots.take(rows), before.take(touched))
+        if ends == "cancel":
+            assert same(self.document.dots, wanted)
 
     @rule(corners=st.tuples(AT, AT), what=st.integers(0, 5))
     def work_on_a_selection(self, corners, what):
@@ -204,6 +219,30 @@ class PaintingMachine(RuleBasedStateMachine):
             assert same(self.document.dots, before)
         self.check_fixed(fixed)
         assert np.array_equal(self.places(self.by_hand), mine)
+
+    @rule(n=st.integers(0, 20), area=st.integers(0, 1), ends=st.booleans(), seed=st.integers(0, 9))
+    def process_an_area(self, n, area, ends, seed):
+        """A draft in place of an area's dots, which is kept or dropped."""
+        document = self.document
+        if area not in document.drawing.areas:
+            return
+        document.end_run()
+        before, fixed = document.dots.copy(), self.places_of_fixed()
+        others = before.take(before.area != area)
+        document.begin_draft("Process", area, document.drawing.style_of(area), keeps_fixed=True)
+        at = np.random.default_rng(seed).uniform((0, 0), SIZE, (200, 2))
+        at = at[document.partition.area_at(at) == area][:n]
+        document.draft(at[: n // 2], np.full(len(at[: n // 2]), 0.2, np.float32))
+        document.draft(at, np.full(len(at), 0.2, np.float32))
+        if ends:
+            document.end_draft()
+            rows = document.rows(others.id)
+            assert same(document.dots.take(rows), others)
+        else:
+            document.drop_draft()
+            assert same(document.dots, before)
+        self.check_fixed(fixed)
+        self.note_hand(before)
 
     @rule()
     def end_the_run(self):

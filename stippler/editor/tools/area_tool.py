@@ -20,6 +20,23 @@ NEW, ADD, TAKE, CUT_OUT = "new area", "add", "take away", "cut out"
 OTHERS = {"gives way": "takes", "stays": "is-cut", "forbids it": "refused"}
 """What lies where a new area is drawn, as the panel says it and as `planar.edits` does."""
 
+DOES = Parameter(
+    "does",
+    "Makes",
+    NEW,
+    "A new area; or adds to the chosen one, takes away from the chosen ones, or cuts a "
+    "part out of it that is an area of its own then.",
+    options=(NEW, ADD, TAKE, CUT_OUT),
+)
+OTHERS_THERE = Parameter(
+    "others",
+    "Others",
+    "gives way",
+    "What an area that lies there does: it gives way, it stays as it is, or it forbids "
+    "the new one. Locked areas always stay.",
+    options=tuple(OTHERS),
+    only=("does", (NEW, ADD)),
+)
 SHAPE = Parameter(
     "shape",
     "Draw",
@@ -66,23 +83,8 @@ class AreaTool(Tool):
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter(
-                "does",
-                "Makes",
-                NEW,
-                "A new area; or adds to the chosen one, takes away from the chosen ones, or cuts a "
-                "part out of it that is an area of its own then.",
-                options=(NEW, ADD, TAKE, CUT_OUT),
-            ),
-            Parameter(
-                "others",
-                "Others",
-                "gives way",
-                "What an area that lies there does: it gives way, it stays as it is, or it forbids "
-                "the new one. Locked areas always stay.",
-                options=tuple(OTHERS),
-                only=("does", (NEW, ADD)),
-            ),
+            DOES,
+            OTHERS_THERE,
             SHAPE,
             FOLLOW,
             SMOOTHING,

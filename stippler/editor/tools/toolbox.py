@@ -27,11 +27,13 @@ from stippler.editor.tools.area_tool import AreaTool
 from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
 from stippler.editor.tools.bucket_tool import BucketTool
+from stippler.editor.tools.grow_tool import GrowTool
 from stippler.editor.tools.knife_tool import KnifeTool
 from stippler.editor.tools.line_choice import ChosenLines
 from stippler.editor.tools.line_tool import LineTool
 from stippler.editor.tools.node_tool import NodeTool
 from stippler.editor.tools.pattern_tool import PatternTool
+from stippler.editor.tools.proposal_tool import ProposalTool
 from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
 from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Sight, Tool, ToolState
@@ -51,7 +53,7 @@ _VALUES_FILE = "tools.json"
 def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
     """Make every tool, in the order of the strip; a new one is a line here."""
     brushes = (BrushTool(kind, shelf) for kind in KINDS)
-    areas = (AreaTool(), KnifeTool(), BucketTool(), NodeTool())
+    areas = (AreaTool(), KnifeTool(), BucketTool(), GrowTool(), ProposalTool(), NodeTool())
     return (*brushes, SelectTool(), *areas, LineTool(), PatternTool(), WarpTool())
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from stippler.editor.area_files import READ, WRITTEN
 from stippler.editor.commands import CTRL, CTRL_SHIFT, Command, Key
+from stippler.editor.tools.grow_tool import GrowTool
+from stippler.editor.tools.proposal_tool import ProposalTool
+from stippler.editor.tools.tool import Desk
 from stippler.ui.actions.parts import Parts
 
 
@@ -41,6 +44,7 @@ def area_commands(parts: Parts) -> Iterator[Command]:
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
     yield from _work_commands(parts)
+    yield from _picture_commands(parts)
     yield from _file_commands(parts)
 
 
@@ -69,6 +73,29 @@ def _work_commands(parts: Parts) -> Iterator[Command]:
          lambda: acts.resize(100.0 / 1.1), (), can_work),
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
+
+
+def _picture_commands(parts: Parts) -> Iterator[Command]:
+    acts, painting, session = parts.area_acts, parts.painting, parts.session
+    tools = painting.toolbox.tools
+    grow = next((t for t in tools if isinstance(t, GrowTool)), None)
+    proposals = next((t for t in tools if isinstance(t, ProposalTool)), None)
+
+    def doing(act: Callable[[Desk], None]) -> Callable[[], None]:
+        return lambda: painting.at_desk(act, parts.view.camera.px_per_mm)
+
+    if grow is not None:
+        yield Command("area.grown", "Make an area of what has grown", doing(grow.make),
+                      can=lambda: painting.toolbox.tool is grow, short="Make area",
+                      tip="the outline that is shown becomes an area.")  # fmt: skip
+    if proposals is not None:
+        yield Command("area.proposed", "Make areas of all proposals", doing(proposals.make),
+                      can=lambda: painting.toolbox.tool is proposals, short="Make areas",
+                      tip="all regions but the ground become areas.")  # fmt: skip
+    yield Command("area.dark", "Dark parts as inverse areas", acts.dark_parts,
+                  can=lambda: session.paintable and session.reference is not None,
+                  short="Dark parts", tip="what is too dark for dots of the page's sizes becomes "
+                  "areas of white dots on black.")  # fmt: skip
 
 
 def _file_commands(parts: Parts) -> Iterator[Command]:

@@ -211,7 +211,13 @@ class AreasPanel:
         ), 0.0), 50.0)  # fmt: skip
 
     def _draw_files(self, widgets: Widgets, commands: Commands) -> None:
-        buttons(widgets, commands, ("area.import", "area.export"))
+        buttons(widgets, commands, ("area.import", "area.export", "area.dark"))
+        acts = self._acts
+        acts.dark_level = 0.01 * widgets.slider(
+            "Dark from", 100.0 * acts.dark_level, 50.0, 100.0,
+            "What of the picture is darker than this is a dark part, and so is what the dots fall "
+            "short of.", "%.0f %%",
+        )  # fmt: skip
         if self._jobs.busy:
             share = self._jobs.share
             widgets.progress(share if share >= 0 else -imgui.get_time(), self._jobs.label)

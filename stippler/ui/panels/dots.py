@@ -7,9 +7,11 @@ from typing import Any
 from imgui_bundle import imgui
 
 from stippler.drawing.style import DEFAULT_DOTS, PARAMETERS, parameter_of
+from stippler.editor.commands import Commands
 from stippler.editor.session import Session
 from stippler.ui.panels.fill import draw_fill
 from stippler.ui.panels.parameters import draw_parameter, draw_parameters, draw_range
+from stippler.ui.popups.styles import said_style
 from stippler.ui.widgets import Widgets
 
 _USUAL_RANGE_MM = (0.12, 0.24)
@@ -17,7 +19,7 @@ _APART = ("n_dots", "density_per_cm2", "size_range_mm")  # one may follow from t
 _OF_BLANKS = ("iterations",)  # what counts on a page without a picture
 
 
-def draw_dots(widgets: Widgets, session: Session) -> None:
+def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
     """Draw the section; on a page without a picture, filling it stands first."""
     style = session.style
     changes: dict[str, Any] = {}
@@ -29,6 +31,7 @@ def draw_dots(widgets: Widgets, session: Session) -> None:
         changes |= draw_parameters(widgets, style, some)
     else:
         widgets.heading("Dots")
+        _draw_style(widgets, session, commands)
         _draw_number(widgets, session, changes)
         _draw_sizes(widgets, session, changes)
         rest = [one for one in PARAMETERS if one.name not in _APART]
@@ -40,6 +43,17 @@ def draw_dots(widgets: Widgets, session: Session) -> None:
     changed = {name: value for name, value in changes.items() if value != getattr(style, name)}
     if changed:
         session.edit_style(**changed)
+
+
+def _draw_style(widgets: Widgets, session: Session, commands: Commands) -> None:
+    widgets.label("Style")
+    command = commands["work.style"]
+    if widgets.button(
+        said_style(session.style),
+        f"{command.hint}: skin, stone, fur and others, each with a picture of it.",
+        name="style", width=-1.0,
+    ):  # fmt: skip
+        command.run()
 
 
 def _draw_number(widgets: Widgets, session: Session, changes: dict[str, Any]) -> None:

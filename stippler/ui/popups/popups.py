@@ -24,6 +24,7 @@ from stippler.ui.popups.save_failed import SaveFailed
 from stippler.ui.popups.scale import ScaleDrawing
 from stippler.ui.popups.shelf import Shelf
 from stippler.ui.popups.shortcut_sheet import Sheet
+from stippler.ui.popups.styles import style_items
 from stippler.ui.preferences import Preferences
 from stippler.ui.widgets import Widgets
 from stippler.ui.window.window import Window
@@ -62,6 +63,10 @@ class Popups:
             lambda: session.messages.say("there is no earlier version of this drawing yet"),
             window.ctx, window.wake,
         )  # fmt: skip
+        self.styles = Shelf(
+            "Styles", lambda: style_items(session),
+            lambda: session.messages.say("there are no styles"), window.ctx, window.wake,
+        )  # fmt: skip
         self.save_failed = SaveFailed(session, lambda is_copy: self.filing.save_as(is_copy=is_copy))
         self.new_page = NewPage(self.filing.begin)
         self.field_commands: FieldCommands | None = None
@@ -84,6 +89,7 @@ class Popups:
             or self.recovery.is_open
             or self.recent.is_open
             or self.earlier.is_open
+            or self.styles.is_open
             or self.save_failed.is_open
             or self.palette.is_open
             or self.sheet.is_open
@@ -110,6 +116,7 @@ class Popups:
         guarded("what was lost", lambda: self.recovery.draw(widgets))
         guarded("the recent files", lambda: self.recent.draw(widgets))
         guarded("the earlier versions", lambda: self.earlier.draw(widgets))
+        guarded("the styles", lambda: self.styles.draw(widgets))
         guarded("the failed save", lambda: self.save_failed.draw(widgets))
         guarded("the question", lambda: self.filing.guard.draw(widgets))
         guarded("the palette at the pointer", lambda: self.context.draw(widgets, commands))
@@ -125,7 +132,7 @@ class Popups:
 
     def close(self) -> None:
         """Free every GL object."""
-        for popup in (self.recovery, self.recent, self.earlier, self.exporting):
+        for popup in (self.recovery, self.recent, self.earlier, self.styles, self.exporting):
             popup.close()
 
     def _keep_keys(self) -> None:
