@@ -13,12 +13,13 @@ from stippler.stippling.picture_field import PictureField
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.spacing import TO_INK, Wanted
+from stippler.stippling.stipple import stages
 
 _N_DOTS, _STEPS, _WIDTH_MM = 2_000, 20, 200.0
 
 
 def figures(repeats: int) -> list[Figure]:
-    """Time first dots, relaxation and sizes of an area of a hundredth of 16 megapixels."""
+    """Time what a page of 16 megapixels takes, and an area of a hundredth of it."""
     side = np.linspace(0.2, 0.9, 4000, dtype=np.float32)
     reference = Reference(side[:, None] * side, _WIDTH_MM)
     turn = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
@@ -28,6 +29,10 @@ def figures(repeats: int) -> list[Figure]:
     first = pulses_inside(reference, style, area)
     return [
         Figure(
+            f"{_N_DOTS:,} dots of a page of 16 megapixels",
+            1e3 * median_s(lambda: _whole(reference, style), repeats), "ms", 150.0, 60.0,
+        ),
+        Figure(
             f"{_N_DOTS:,} dots in an area of 16 megapixels, first dots to sizes",
             1e3 * median_s(lambda: _stippled(reference, style, area), repeats), "ms", 150.0, 60.0,
         ),
@@ -36,6 +41,11 @@ def figures(repeats: int) -> list[Figure]:
             1e3 * median_s(lambda: _relaxed(reference, first.position_mm, area), repeats), "ms",
         ),
     ]  # fmt: skip
+
+
+def _whole(reference: Reference, style: Style) -> None:
+    for _ in stages(reference, style, snapshots=False):
+        pass
 
 
 def _stippled(reference: Reference, style: Style, area: shapely.Polygon) -> None:

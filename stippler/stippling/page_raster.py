@@ -30,6 +30,7 @@ _MIN_DOTS = 500  # below this a bleed is not worth it
 _LEVELS = 65_535
 _MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
 _FARTHEST = 2.0  # radii beyond the edge from which a dot is drawn back to it, at most
+_WEIGHED = 8.0  # pixels of the densest dots' cells by which these are weighed, at least
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
 
 
@@ -109,12 +110,19 @@ class PageRaster:
     def ink_field(self) -> DensityField:
         """Return the darkness as a weight of the page, bleed included, in mm.
 
-        A picture whose pixels were divided for its dots is taken as it came: it weighs the same.
+        Where a dot's cell has far more pixels than tell where its ink lies, blocks are averaged. A
+        picture whose pixels were divided for its dots is taken as it came: it weighs the same.
         """
-        k = self.divided
-        values, bleed = self.darkness[::k, ::k], -(-self.bleed // k)
-        if bleed:
-            values = np.pad(values, bleed, mode="symmetric")
+        if self.divided > 1:
+            k = self.divided
+            values, bleed = self.darkness[::k, ::k], -(-self.bleed // k)
+            if bleed:
+                values = np.pad(values, bleed, mode="symmetric")
+        else:
+            densest = float(self.rule.density(np.linspace(0.0, 1.0, 257)).max())
+            k = max(int(math.sqrt(1.0 / max(_WEIGHED * densest, 1e-9))), 1)
+            k = min(k, *self.darkness.shape)
+            values, bleed = _blocks(self.darkness, k, self.bleed)
         pixel_mm = k * self.pixel_mm
         return DensityField(values, pixel_mm, (-bleed * pixel_mm, -bleed * pixel_mm))
 
@@ -214,6 +222,21 @@ def _share_that_fits(
     h, w = rows.stop - rows.start, columns.stop - columns.start
     n_cells = CELLS_PER_DOT * densest * (h + 2 * bleed) * (w + 2 * bleed)
     return float(max(_MOST_CELLS, 16 * CELLS_PER_DOT * n_dots) / max(n_cells, 1.0))
+
+
+def _blocks(field: NDArray[np.float32], k: int, bleed: int) -> tuple[NDArray[np.float32], int]:
+    """Return the means of blocks of k x k pixels, and how many of them the bleed has.
+
+    The bleed repeats the field, mirrored, and so does what the last blocks lack.
+    """
+    n = -(-bleed // k)
+    pads = [(n * k, n * k + -size % k) for size in field.shape]
+    if any(map(any, pads)):
+        field = np.pad(field, pads, mode="symmetric")
+    if k == 1:
+        return field, n
+    h, w = (size // k for size in field.shape)
+    return field.reshape(h, k, w, k).mean(axis=(1, 3), dtype=np.float32), n
 
 
 def _mirrored(x: NDArray[np.float64], size: float) -> NDArray[np.float64]:

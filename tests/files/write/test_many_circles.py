@@ -61,8 +61,8 @@ def test_vpype_plots_them_in_mm(tmp_path):
 
 def test_resvg_shows_the_same_ink(tmp_path):
     sheet = sheet_of(2500)
-    ours = 1 - np.concatenate(list(grey_strips(sheet, 300))).astype(np.float32) / 255
-    theirs = consumers.resvg(written(sheet, tmp_path / "a.svg"), 300, 12)
+    ours = 1 - np.concatenate(list(grey_strips(sheet, 150))).astype(np.float32) / 255
+    theirs = consumers.resvg(written(sheet, tmp_path / "a.svg"), 150, 16)
     assert theirs.sum() == pytest.approx(ours.sum(), rel=0.005)
     assert np.abs(consumers.averaged(ours - theirs, 16)).max() < 0.02
 
