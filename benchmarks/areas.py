@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from benchmarks.figures import Figure
 from stippler.drawing.line import ADHERE, Line
@@ -36,6 +37,67 @@ def figures(*, quick: bool = False) -> list[Figure]:
 
     return [
         Figure("one border of 300 areas moved, 200k dots", best_ms(edit, repeats), "ms", 30, 5),
+        Figure("the same as a step, to the buffers of the next frame",
+               step_ms(areas, dots, repeats), "ms", 30, 5),
+        *picture_figures(3 if quick else 5),
+    ]  # fmt: skip
+
+
+def step_ms(areas: PlanarMap, dots: NDArray[np.float64], repeats: int) -> float:
+    """Return what a drag's release takes in a document: history, dots, nodes, GPU buffers."""
+    from stippler.drawing.area_edits import edit_areas
+    from stippler.drawing.document import Document
+    from stippler.drawing.dots import Dots
+    from stippler.drawing.drawing import Drawing, Page
+    from stippler.editor.tools.node_index import NodeIndex
+    from stippler.editor.tools.node_source import BorderNodes
+    from stippler.headless import open_context
+    from stippler.render.scene import Scene
+
+    drawing = Drawing.blank(Page(*SIZE))
+    drawing.dots = Dots.round(dots, 0.1)
+    document = Document(drawing)
+    edit_areas(document, "Areas", lambda _: edits.Outcome(areas, tuple(areas.areas[1:])))
+    scene, nodes, source = Scene(open_context()), NodeIndex(joins=True), BorderNodes()
+    arc = next(k for k, a in areas.arcs.items() if OUTSIDE not in (a.left, a.right))
+    by = itertools.cycle([(0.3, 0.2), (-0.3, -0.2)])
+
+    def step() -> None:
+        edit_areas(document, "Move", lambda m: moves.move_by(m, [(arc, 6)], next(by)))
+        nodes.update(source.paths(document))
+        scene.sync(document)
+
+    return best_ms(step, repeats)
+
+
+def picture_figures(repeats: int) -> list[Figure]:
+    """Measure proposals from a megapixel."""
+    from PIL import Image
+
+    from stippler.analysis.picture_parts import parts_of
+    from stippler.analysis.region_outlines import outlines_of
+    from stippler.resources import assets
+
+    with Image.open(assets() / "samples" / "ammonite.png") as picture:
+        grey = np.asarray(picture.convert("L").resize((1095, 913)), np.float32)
+    darkness = 1.0 - grey / 255.0
+    parts = parts_of(darkness)
+    regions = parts.regions(24)
+
+    def propose() -> None:
+        found = parts_of(darkness)
+        outlines_of(found.regions(24)[found.labels], 0.1)
+
+    def split() -> None:
+        outlines_of(parts.split(regions, parts.n // 2)[parts.labels], 0.1)
+
+    def grow() -> None:
+        outlines_of(parts.grown({parts.n // 2}, {0}).astype(np.int32)[parts.labels], 0.1)
+
+    return [
+        Figure("areas proposed from a megapixel", best_ms(propose, repeats) / 1e3, "s", 1),
+        Figure("a region split, to its outlines", best_ms(split, repeats), "ms", 100),
+        Figure("a scribble, to the outline grown", best_ms(grow, repeats), "ms", 100),
     ]
 
 

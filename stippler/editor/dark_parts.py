@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from stippler.drawing.planar.path import Path
     from stippler.drawing.reference import Reference
 
-LEAST_MM2 = 1.0
+LEAST_MM2 = 4.0
 _MOST = 60
 _MOST_SIDE = 1200
 _CLOSED_PX = 2

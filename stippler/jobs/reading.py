@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,8 +33,10 @@ def read_only(source: Source, *, is_warm: Callable[[], bool]) -> Iterator[Work]:
     """Read a picture, to be drawn after by hand, and load everything that painting needs."""
     yield Work(READ)
     reference, notes = read_source(source)
-    yield Work(READ, 1, 1, reference.adjusted(source.adjustment), notes=notes)
-    yield from make_ready(is_warm=is_warm)
+    reference = reference.adjusted(source.adjustment)
+    yield Work(READ, 1, 1, reference, notes=notes)
+    for ready in make_ready(is_warm=is_warm):  # only the latest result may be seen
+        yield replace(ready, reference=reference, notes=notes)
 
 
 def open_drawing(path: Path, *, is_warm: Callable[[], bool]) -> Iterator[Work]:

@@ -29,6 +29,7 @@ def stipple_picture(
     Where the kernels are not compiled yet (`is_warm`), a process of its own does that first: it
     can be ended at any time, and leaves the window's thread alone.
     """
+    notes: tuple[str, ...] = ()
     if reference is None:
         yield Work(READ)
         reference, notes = read_source(source)
@@ -38,13 +39,21 @@ def stipple_picture(
     note = preflight.warning("stipple", n_dots, n_pixels)
     if not is_warm():
         for n_ready, n_kernels in prepared_kernels():
-            yield Work(PREPARE, n_ready, n_kernels, reference, note=note)
+            yield Work(PREPARE, n_ready, n_kernels, reference, note=note, notes=notes)
     from stippler.brushes.warm_up import warm_up_brushes
     from stippler.stippling.pipeline import run
     from stippler.stippling.task import Task
 
     for progress in run(Task(style, reference)):
-        yield Work(progress.stage, progress.done, progress.total, reference, progress, note=note)
+        yield Work(
+            progress.stage,
+            progress.done,
+            progress.total,
+            reference,
+            progress,
+            note=note,
+            notes=notes,
+        )
     warm_up_brushes()
 
 

@@ -221,7 +221,7 @@ def test_look_and_values_survive(start: Start) -> None:
     assert desk.app.editor.look.theme is DARK
     assert desk.app.editor.look.opacity == 0.8
     assert (desk.app.session.tone, desk.app.session.width_mm) == ("perceptual", 77.0)
-    run_by_name(desk, "values as at first")
+    run_by_name(desk, "default values")
     assert (desk.app.session.tone, desk.app.session.width_mm) == ("illustration", 148.0)
 
 

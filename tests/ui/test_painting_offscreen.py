@@ -202,7 +202,7 @@ def test_the_brush_panel_changes_the_brush_and_brushes_are_kept(
         assert desk.host.shown("Name") == (toolbox.brush is not None)
     desk.host.click("Jitter")
     desk.host.click("Copy brush")
-    desk.host.click("Rope")
+    desk.host.click("On a rope")
     desk.host.key("right_bracket")
     assert (toolbox.brush.name, toolbox.brush.smoothing) == ("Jitter 2", "rope")
     assert toolbox.brush.radius_mm > 4

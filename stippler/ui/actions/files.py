@@ -86,7 +86,7 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),),
                   can=lambda: session.paintable and session.n_dots > 0)  # fmt: skip
     yield Command("work.style", "Choose a style", parts.popups.styles.ask)
-    yield Command("work.reset", "Values as at first", reset)
+    yield Command("work.reset", "Default values", reset)
     yield Command("work.scale", "Scale the drawing", parts.popups.scale.ask,
                   can=lambda: session.paintable,
                   tip="to another size or number of dots, its tone kept.")  # fmt: skip

@@ -86,7 +86,9 @@ def tab_scale(names: Sequence[str], padding: float, scale: float) -> float:
     share = 1.0
     for place, row in rows.items():
         text = sum(imgui.calc_text_size(name).x for name in row)
-        spare = widths[place] - 16.0 * scale - len(row) * 3.0 * scale
+        spare = (
+            widths[place] - (40.0 + 3.0 * len(row)) * scale
+        )  # with the cross of the one in front
         while share > _SMALLEST_TAB and share * text + len(row) * 2 * padding * share**3 > spare:
             share -= 0.02
     return share

@@ -180,7 +180,7 @@ def _draw_stroke(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> Non
             changes["spacing"] = spacing / 100
     chosen = widgets.segments(
         "Smoothing",
-        ("None", "Rope", "Window"),
+        ("None", "On a rope", "Average"),
         _SMOOTHINGS.index(brush.smoothing),
         (
             "The brush follows the pointer.",
@@ -192,7 +192,12 @@ def _draw_stroke(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> Non
         changes["smoothing"] = _SMOOTHINGS[chosen]
     if brush.smoothing != "none":
         length = widgets.slider(
-            "Length", brush.smoothing_mm, 0.1, 50, "Of rope or window, in mm.", "%.1f mm"
+            "Length",
+            brush.smoothing_mm,
+            0.1,
+            50,
+            "Of the rope, or of the averaged stretch.",
+            "%.1f mm",
         )
         if length != brush.smoothing_mm:
             changes["smoothing_mm"] = length

@@ -122,9 +122,7 @@ class PreferencesWindow:
             "Tone, page width and the values of the dots are at the next start as they were last "
             "used, but for those on the command line; the seed is 1 again."
         )
-        if widgets.button(
-            "Values as at first", f"{commands['work.reset'].label}: tone, width, dots."
-        ):
+        if widgets.button("Default values", f"{commands['work.reset'].label}: tone, width, dots."):
             commands["work.reset"].run()
         if self._kept.folder is not None:
             widgets.rule()

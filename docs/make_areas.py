@@ -1,0 +1,113 @@
+"""Make the pictures of `docs/areas.md`: the window with areas, and the paper's Fig. 2.
+
+``python docs/make_areas.py [--only window|eye]``; without a display, some minutes.
+
+`docs/areas-eye.png` is what Fig. 2 of Deussen et al. (2000) shows: the eye and its surroundings
+relaxed apart, so that the border between them is enhanced; left as one area, right as two.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from stippler.api import process
+from stippler.app import App
+from stippler.drawing.area_edits import edit_areas
+from stippler.drawing.document import Document
+from stippler.drawing.drawing import Drawing
+from stippler.drawing.planar import edits, moves
+from stippler.drawing.planar.path import Path as Outline
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
+from stippler.ui.panels.layout import AREAS
+from stippler.ui.window.scripted_host import Host
+
+DOCS = Path(__file__).resolve().parent
+SAMPLE = DOCS.parent / "assets" / "samples" / "ammonite.png"
+SIDE_PX, SIDE_MM = 420, 70.0
+
+
+def main() -> None:
+    """Make the pictures asked for."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--only", choices=("window", "eye"))
+    only = options.parse_args().only
+    if only != "eye":
+        make_window(DOCS / "areas.png")
+    if only != "window":
+        make_eye(DOCS / "areas-eye.png")
+
+
+def make_window(out: Path) -> None:
+    """Open the sample, take proposals and dark parts, and show the list."""
+    os.environ["STIPPLER_CONFIG_DIR"] = tempfile.mkdtemp()
+    app = App(
+        Style(n_dots=12_000, iterations=12), tone="illustration", width_mm=148.0,
+        size=(1280, 800), offscreen=True,
+    )  # fmt: skip
+    host = Host(app.window, app.editor, app.step)
+    try:
+        host.drop(SAMPLE)
+        host.until(lambda: app.session.phase == "done", "the drawing")
+        acts = app.editor.area_acts
+        acts.dark_level = 0.8
+        acts.dark_parts()
+        host.until(lambda: not acts.jobs.busy, "the dark parts")
+        acts.process()
+        host.until(lambda: not app.session.busy, "their dots")
+        acts.choice.choose(acts.choice.ids[:2])
+        app.editor.show_panel(AREAS)
+        host.leave()
+        host.settle()
+        Image.fromarray(host.screenshot()).quantize(128).save(out, optimize=True)
+    finally:
+        app.close()
+
+
+def eye() -> tuple[Reference, Outline]:
+    """Return a picture of an eye, and the outline of its opening."""
+    y, x = np.mgrid[0:SIDE_PX, 0:SIDE_PX] / SIDE_PX
+    across = np.clip((x - 0.5) / 0.38, -1.0, 1.0)
+    upper, lower = 0.5 - 0.2 * (1 - across**2), 0.5 + 0.13 * (1 - across**2)
+    within = (y > upper) & (y < lower) & (np.abs(x - 0.5) < 0.38)
+    far = np.hypot(x - 0.5, y - 0.47)
+    ball = 0.06 + 0.25 * np.abs(x - 0.5) + 0.3 * np.clip((upper + 0.06 - y) / 0.06, 0, 1)
+    ball = np.where(far < 0.15, 0.45 + 0.3 * (far / 0.15) ** 3, ball)
+    ball = np.where(far < 0.065, 0.92, ball)
+    ball = np.where(np.hypot(x - 0.53, y - 0.44) < 0.022, 0.0, ball)
+    skin = 0.28 + 0.2 * np.exp(-(((y - upper + 0.05) / 0.05) ** 2)) + 0.08 * (y - 0.5)
+    picture = np.clip(np.where(within, ball, skin), 0.0, 1.0).astype(np.float32)
+    t = np.linspace(-1.0, 1.0, 25)
+    top = np.column_stack([0.5 + 0.38 * t, 0.5 - 0.2 * (1 - t**2)])
+    bottom = np.column_stack([0.5 + 0.38 * t, 0.5 + 0.13 * (1 - t**2)])[::-1]
+    corners = np.concatenate([top, bottom[1:-1]]) * SIDE_MM
+    return Reference(picture, SIDE_MM), moves.smooth_path(Outline.polyline(corners, closed=True))
+
+
+def make_eye(out: Path) -> None:
+    """Draw the eye as one area, and as two that are stippled apart."""
+    reference, outline = eye()
+    pictures = []
+    for parted in (False, True):
+        nothing = np.empty((0, 2)), np.empty(0, np.float32)
+        style = Style(n_dots=6_000, iterations=25)
+        document = Document(Drawing.from_reference(reference, *nothing, style))
+        if parted:
+            edit_areas(document, "Eye", lambda areas: edits.add(areas, outline))
+        drawing = process(document.drawing, sorted(document.drawing.areas))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "eye.png"
+            drawing.save(path, dpi=200)
+            pictures.append(np.array(Image.open(path).convert("L")))
+    gap = np.full((len(pictures[0]), 40), 255, np.uint8)
+    Image.fromarray(np.hstack([pictures[0], gap, pictures[1]])).save(out, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
