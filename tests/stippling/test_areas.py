@@ -100,7 +100,7 @@ def test_ink_meets_the_tone_within_an_area_with_a_hole() -> None:
     for area, outline in ((1, L_SHAPE), (2, RING)):
         under = shapely.contains_xy(outline, x.ravel(), y.ravel())
         ink = np.pi * np.square(made.dots.radius_mm[made.dots.area == area].astype(float)).sum()
-        assert ink == pytest.approx(fine[under].sum() * 0.01, rel=0.02)
+        assert ink == pytest.approx(fine[under].sum() * 0.01, rel=0.03)
 
 
 def test_fixed_dots_stay_and_new_ones_keep_clear_of_them_and_of_neighbours() -> None:
