@@ -3,11 +3,13 @@
 ``python -m benchmarks.soak [MINUTES] [SEED]`` prints what it did and what it found; ten minutes are
 what is promised, one is the topic's. Mouse, wheel, keys, text, dropped pictures (broken ones, too),
 dialogs, new pages and relaxations come from a seeded generator, through the same callbacks as a
-person's, into an offscreen window.
+person's, into an offscreen window; so do saves, copies, exports, files opened again, and edits of
+areas. Every file saved is opened and compared. Every other round has `N_DOTS` dots.
 """
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import logging
 import os
@@ -19,18 +21,31 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from imgui_bundle import imgui  # noqa: F401 - before glfw, so that both share one library
+
+# isort: split
 import glfw
 import numpy as np
 
+from benchmarks.random_areas import EDITS
 from stippler.app import App
-from stippler.drawing.drawing import Page
+from stippler.drawing.area_edits import edit_areas
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.style import Style
+from stippler.errors import GeometryError
+from stippler.opening import open_file
 
 if TYPE_CHECKING:
     from benchmarks.figures import Figure
 
 _SIZE = (1000, 700)
 _ROUND_S = 20.0
+N_DOTS = 100_000
+MOST_MB = 150.0
+"""What memory may grow by after the third round, however long it goes on: allocators keep some."""
+
+_EXPORTS = (".svg", ".png", ".pdf", ".csv", ".dxf")
 _KEYS = (
     *"asxheiuljbwgkcmvfrtp1",
     *("left_bracket", "right_bracket", "enter", "delete", "space", "tab", "f1"),
@@ -77,6 +92,7 @@ class Hand:
         self._mods = 0
         self._down: set[int] = set()
         self.n_frames, self.acts = 0, Counter[str]()
+        self.saved: Path | None = None
         self.pictures = _pictures(folder, self._rng)
         self.app.window.input.focus(True)
         acts: dict[str, tuple[float, Callable[[], None]]] = {
@@ -90,6 +106,11 @@ class Hand:
             "control": (2.0, self._control),
             "drop": (0.05, self._drop),
             "new page": (0.02, self._new_page),
+            "save": (0.15, self._save),
+            "load": (0.03, self._load),
+            "export": (0.05, self._export),
+            "area": (0.3, self._edit_areas),
+            "relax": (0.05, self._relax),
             "focus": (0.2, self._focus),
             "resize": (0.1, self._resize),
         }
@@ -179,6 +200,48 @@ class Hand:
     def _new_page(self) -> None:
         self.app.session.new(Page(*map(float, self._rng.uniform(20, 200, 2))))
 
+    def _save(self) -> None:
+        """Save, and look whether the file holds what was in the drawing then."""
+        session = self.app.session
+        if session.document is None or session.exporting or session.document.in_stroke:
+            return
+        path = self._folder / f"saved-{self._rng.integers(3)}.stipple"
+        dots = session.document.dots.copy()
+        session.saving.wishes.history = bool(self._rng.random() < 0.3)
+        session.save(path, is_copy=bool(self._rng.random() < 0.3))
+        self._until_written()
+        found = open_file(path).dots
+        assert np.array_equal(found.id, dots.id), "a file lacks dots"
+        assert np.array_equal(found.position_mm, dots.position_mm), "a file has dots elsewhere"
+        self.saved = path
+
+    def _until_written(self) -> None:
+        while self.app.session.exporting:
+            self.n_frames += self.app.step(0.005)
+
+    def _load(self) -> None:
+        if self.saved is not None and not self.app.editor.painting.is_busy:
+            self.app.session.open_drawing(self.saved)
+
+    def _export(self) -> None:
+        session = self.app.session
+        if session.n_dots and not session.exporting:
+            ending = _EXPORTS[self._rng.integers(len(_EXPORTS))]
+            session.export(self._folder / f"export{ending}", 100.0)
+
+    def _edit_areas(self) -> None:
+        session = self.app.session
+        document = session.document
+        if document is None or not session.paintable or document.in_stroke or document.in_run:
+            return
+        name = str(self._rng.choice(list(EDITS)))
+        with contextlib.suppress(GeometryError):  # refused, as it may be
+            edit_areas(document, name, lambda borders: EDITS[name](borders, self._rng))
+
+    def _relax(self) -> None:
+        if not self.app.editor.painting.is_busy:
+            self.app.session.relax(3, weighted=False)
+
     def _focus(self) -> None:
         for focused in (0, 1):
             self.app.window.input.focus(bool(focused))
@@ -201,6 +264,13 @@ def _pictures(folder: Path, rng: np.random.Generator) -> list[Path]:
     paths[3].write_bytes(paths[3].read_bytes()[:200])
     paths[4].write_text("no picture")
     return paths
+
+
+def _dense(n: int) -> Drawing:
+    drawing = Drawing.blank(Page(100.0, 80.0))
+    at = np.random.default_rng(n).random((n, 2)) * (100, 80)
+    drawing.dots = Dots.round(at, 0.05)
+    return drawing
 
 
 def check_drawing(app: App) -> None:
@@ -235,12 +305,16 @@ class Soak:
         Of the histories at the ends of the rounds.
     """
 
-    def __init__(self, folder: Path, seed: int) -> None:
+    def __init__(self, folder: Path, seed: int, n_dots: int = N_DOTS) -> None:
         os.environ["STIPPLER_CONFIG_DIR"] = str(folder / "config")
+        self._n_dots = n_dots
         self._log = Faults()
         logging.getLogger("stippler").addHandler(self._log)
         style = Style(n_dots=3000, iterations=5)
-        self.app = App(style, tone="linear", width_mm=100.0, size=_SIZE, offscreen=True)
+        self.app = App(
+            style, tone="linear", width_mm=100.0, size=_SIZE, offscreen=True,
+            recovery=folder / "recovery", backups=folder / "backups",
+        )  # fmt: skip
         self.hand = Hand(self.app, folder, seed)
         self.memory_mb: list[float] = []
         self.n_steps = 0
@@ -252,7 +326,10 @@ class Soak:
 
     def run_round(self, goes_on: Callable[[], bool]) -> None:
         """Begin with a drawing, give random input for as long as asked, check, note the memory."""
-        self.app.session.open(self.hand.pictures[len(self.memory_mb) % 2])
+        if len(self.memory_mb) % 2:
+            self.app.session.show(_dense(self._n_dots))
+        else:
+            self.app.session.open(self.hand.pictures[len(self.memory_mb) // 2 % 2])
         self._wait()
         while goes_on():
             self.hand.act()
@@ -273,6 +350,7 @@ class Soak:
 
     def close(self) -> None:
         """Close the editor."""
+        self.app.session.keeping.close()
         self.app.close()
         logging.getLogger("stippler").removeHandler(self._log)
 
@@ -310,6 +388,7 @@ def figures(quick: bool = False, minutes: float = 1.0, seed: int = 1) -> list[Fi
         Figure("random input: steps of history at the ends of rounds", soak.n_steps, "steps"),
         Figure(
             "random input: memory grown since the third round", soak.memory_mb[-1] - settled, "MB",
+            MOST_MB,
             note=f"{len(soak.memory_mb)} rounds, {soak.memory_mb[-1]:.0f} MB at the end",
         ),
     ]  # fmt: skip

@@ -36,12 +36,10 @@ def check_edit(edit: Edit, document: Document) -> None:
         _check_change(name, change)
     if len(dots.removed) or len(dots.inserted) or len(dots.shifted.ids):
         _check_layout(dots, document)
-    came = dots.inserted.dots.id
     for change in dots.changes.values():
-        there = document.rows(change.ids) >= 0
-        there &= ~np.isin(change.ids, dots.removed.dots.id)
-        if not (there | np.isin(change.ids, came)).all():
-            raise ValueError("changes dots that are not there")
+        stays = (document.rows(change.ids) >= 0) & ~np.isin(change.ids, dots.removed.dots.id)
+        if not stays.all():
+            raise ValueError("changes dots that are not there before and after")
     _check_owners(edit, document)
 
 
@@ -69,8 +67,10 @@ def _check_placed(placed: DotRows) -> None:
 
 def _check_change(name: str, change: Change) -> None:
     n = len(change.ids)
+    if name not in LIKE or name == "id":
+        raise ValueError(f"{name[:40]} is nothing of a dot that changes")
     _check_array("id", change.ids, n)
-    if len(np.unique(change.ids)) < n or name == "id":
+    if len(np.unique(change.ids)) < n:
         raise ValueError("changes a dot twice")
     for values in (change.before, change.after):
         _check_array(name, values, n)

@@ -341,5 +341,7 @@ def _warn(desk: Desk, made: Progress, what: str = "page") -> bool:
 
     notes = notes_on(made, what)
     if notes:
-        desk.messages.say("; ".join(notes), WARNING)
+        lack = made.shortfall is not None and made.shortfall.share > 0.0005
+        more = ("Dark parts, in the panel Areas, makes inverse areas of them",) if lack else ()
+        desk.messages.say("; ".join((*notes, *more)), WARNING)
     return bool(notes)

@@ -13,7 +13,7 @@ from stippler.ui.panels.layout import DRAWING, VIEW
 from stippler.ui.theme import PANEL_WIDTH, STRIP_WIDTH
 
 PLACE = (650.0, 330.0)
-LEFT = round(STRIP_WIDTH + PANEL_WIDTH) + 3  # of the canvas
+LEFT = round(STRIP_WIDTH + PANEL_WIDTH) + 60  # the strip may have two columns
 
 
 @pytest.fixture(autouse=True)

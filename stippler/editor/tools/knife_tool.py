@@ -97,6 +97,8 @@ def crossed_by(areas: PlanarMap, line: Path) -> list[int]:
     """Return the areas that a line runs through."""
     import shapely
 
+    if len(line) < 2:  # the points of a click lie in one place of the grid
+        return []
     drawn = shapely.linestrings(line.points_mm)
     return [k for k in areas.areas if shapely.intersection(drawn, areas.outline(k)).length > 0.0]
 

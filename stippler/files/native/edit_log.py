@@ -7,11 +7,13 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stippler.drawing.document import Document
 from stippler.drawing.edit import Edit
 from stippler.drawing.edit_check import check_edit
-from stippler.drawing.log import ENDED, OPENED, STEP, Entry
+from stippler.drawing.history import Step, edit_of
+from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
 from stippler.files.native import arrays
@@ -93,13 +95,12 @@ def replay(
     if document.drawing.reference is not None:
         picture = document.drawing.reference.source
         pictures[picture.digest] = picture
-    n_done, in_run, problem = 0, False, ""
+    n_done, in_run, problem, order = 0, False, "", _Order()
     for record in records:
         try:
             entry = entry_of(record, pictures, read_picture, f"record {n_done}", limits)
             if entry is not None:
-                if entry.edit is not None:
-                    check_edit(entry.edit, document)
+                order.check(entry, document)
                 document.replay(entry)
                 in_run = entry.what == OPENED or (in_run and entry.what != ENDED)
         except _WRONG as error:
@@ -109,6 +110,60 @@ def replay(
     if in_run:
         document.replay(Entry(ENDED))
     return n_done, problem
+
+
+class _Order:
+    """Refuses entries that a document would not tell in that order, or in that state."""
+
+    def __init__(self) -> None:
+        self._of_run: NDArray[np.int64] | None = None  # ids of the dots that the run began with
+
+    def check(self, entry: Entry, document: Document) -> None:
+        """Raise `ValueError` unless an entry may be replayed now."""
+        edit, history = entry.edit, document.history
+        if edit is not None:
+            check_edit(edit, document)
+        if entry.what not in (STEP, MADE, UNDONE, REDONE, OPENED, PART, ENDED):
+            raise ValueError(f"tells of {entry.what[:40]!r}, which is unknown")
+        if entry.what == OPENED:
+            if edit is None or not edit.is_empty or self._of_run is not None:
+                raise ValueError("begins a run within another, or with a change")
+            self._of_run = np.array(document.dots.id)
+        elif entry.what == ENDED:
+            self._of_run = None
+        elif entry.what == PART:
+            self._check_part(edit)
+        elif entry.what == MADE and history.steps:
+            raise ValueError("makes dots when there is a history already")
+        elif entry.what in (UNDONE, REDONE):
+            step = history.undone if entry.what == UNDONE else history.redone
+            if self._of_run is not None:
+                raise ValueError("is undone within a run")
+            if edit is None or (step is not None and not _is_step(step, edit, entry.what)):
+                raise ValueError("undoes or redoes another step than the last")
+
+    def _check_part(self, edit: Edit | None) -> None:
+        if edit is None or self._of_run is None:
+            raise ValueError("is part of no run")
+        dots = edit.dots
+        if len(dots.removed) or len(dots.inserted) or len(dots.shifted.ids) or edit.values:
+            raise ValueError("is more than a run does")
+        if not all(np.isin(change.ids, self._of_run).all() for change in dots.changes.values()):
+            raise ValueError("moves dots that the run does not know")
+
+
+def _is_step(step: Step, edit: Edit, what: str) -> bool:
+    """Return whether an edit does, or takes back, a step of the history."""
+    known = edit_of(step)
+    if known is None:
+        return True
+    wanted = known.inverse() if what == UNDONE else known
+    mine, others = dict(wanted.arrays()), dict(edit.arrays())
+    del mine["values"], others["values"]
+    same_dots = mine.keys() == others.keys() and all(
+        np.array_equal(mine[name], others[name]) for name in mine
+    )
+    return same_dots and wanted.values == edit.values
 
 
 def entry_of(

@@ -10,20 +10,18 @@ from __future__ import annotations
 import hashlib
 import struct
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from typing import Any
 
+from stippler.drawing import records
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.edit import Edit
 from stippler.drawing.edit_check import check_edit
-from stippler.drawing.foreign import Foreign
 from stippler.drawing.history import Step, edit_of
 from stippler.drawing.log import STEP, UNDONE, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
 from stippler.files.native import arrays, structure
-from stippler.files.native.drawing_file import STRUCTURE, ReadPicture, members_of
+from stippler.files.native.drawing_file import ReadPicture
 from stippler.files.native.edit_log import entry_of, of_entry, of_picture
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
 
@@ -36,25 +34,26 @@ _DO = "open it without its history"
 
 
 def state_of(drawing: Drawing) -> str:
-    """Return what tells a drawing's state from all others."""
-    fields, values = drawing.foreign.document, drawing.foreign.fields
-    members = members_of(replace(drawing, foreign=Foreign(fields, values)))
-    document = structure.from_bytes(members.pop(STRUCTURE), STRUCTURE)
-    members[STRUCTURE] = structure.to_bytes(_plain(document))
+    """Return what tells a drawing's state from others: its dots, and which values there are.
+
+    What later programs add to values or dots changes nothing of it.
+    """
     mixed = hashlib.sha256()
-    for name in sorted(members):
-        mixed.update(f"{name} {len(members[name])} ".encode())
-        mixed.update(members[name])
+    for name in _DOT_FIELDS:
+        mixed.update(arrays.to_bytes(getattr(drawing.dots, name)))
+    page, reference = drawing.page, drawing.reference
+    told = [float(page.width_mm), float(page.height_mm)]
+    ids = [sorted(drawing.table(kind)) for kind in _TABLES]
+    picture = reference.source.digest if reference is not None else ""
+    mixed.update(structure.to_bytes([told, ids, picture]))
     return mixed.hexdigest()
 
 
-def _plain(value: Any) -> Any:
-    """Return JSON whose numbers are written alike, whole or not: 9 and 9.0 are one state."""
-    if isinstance(value, dict):
-        return {key: _plain(inside) for key, inside in sorted(value.items())}
-    if isinstance(value, list):
-        return [_plain(inside) for inside in value]
-    return float(value) if type(value) is int else value
+_DOT_FIELDS = (
+    "id", "position_mm", "radius_mm", "seed", "elongation", "angle_rad", "roughness", "area",
+    "constraint", "curve", "parameter",
+)  # fmt: skip
+_TABLES = (records.AREA, records.LINE, records.PATTERN, records.STYLE, records.BORDER)
 
 
 def steps_to_bytes(steps: Sequence[Step], n_done: int, drawing: Drawing) -> bytes:

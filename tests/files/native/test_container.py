@@ -151,3 +151,14 @@ def test_no_file_and_a_folder_are_told_apart(tmp_path):
         read_container(tmp_path / "none.stipple")
     with pytest.raises(DrawingFileError, match="folder"):
         read_container(tmp_path)
+
+
+@pytest.mark.parametrize("version", ["0", "-1", '"1"', "true", "null", "1.0"])
+def test_a_version_that_is_none_is_refused(tmp_path, version):
+    path = tmp_path / "one.stipple"
+    manifest = f'{{"format":"stipple","version":{version},"members":{{}}}}'
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("mimetype", MIME)
+        archive.writestr(MANIFEST, manifest)
+    with pytest.raises(DrawingFileError, match="names no version"):
+        read_container(path)
