@@ -343,7 +343,7 @@ def test_what_no_hand_has_touched_is_closed_unasked(desk, picture: Path) -> None
 
 def test_a_picture_dropped_on_a_file_dialog_is_asked_about(desk, picture: Path) -> None:
     painted(desk, picture)
-    desk.host.key("e", ctrl=True)
+    desk.host.key("o", ctrl=True)
     assert desk.app.editor.popups.dialogs.is_open
     desk.host.drop(picture)
     assert not desk.app.editor.popups.dialogs.is_open  # two windows fought for the keyboard
