@@ -12,7 +12,7 @@ from stippler.files.write.options import Option
 CIRCLES, COMPOUND, TAPS, POINTS = "circles", "compound", "taps", "points"
 NONE, OPEN, CLOSED = "none", "open", "closed"
 CROP, ALL = "crop", "all"
-AREAS, POLARITY = "areas", "polarity"
+AREAS, PENS, POLARITY = "areas", "pens", "polarity"
 MAX_DECIMALS = 6
 
 PLATE = (
@@ -42,8 +42,8 @@ PLATE = (
     Option("caption", "", "Text under the drawing."),
     Option("letter", "", "Letter in the upper left corner, such as A."),
     Option(
-        "layers", AREAS, "A layer, or a plotter's file, for each area, or for ink and for paper.",
-        choices=(AREAS, POLARITY),
+        "layers", AREAS, "A layer, or a plotter's file, for each area or pen, or for ink, paper.",
+        choices=(AREAS, PENS, POLARITY),
     ),
     Option("press", None, "A calibrated press, pen or paper: dots are solved for it.", kind=str),
     Option("gain", None, "How much every edge grows in print; dots are solved for it.",

@@ -12,7 +12,7 @@ import numpy as np
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.files.write.format import Values
-from stippler.files.write.formats import ALL, CLOSED, NONE, POLARITY
+from stippler.files.write.formats import ALL, CLOSED, NONE, PENS, POLARITY
 from stippler.files.write.lettering import text_lines, width_mm, wrapped
 from stippler.files.write.sheet import Layer, Line, Sheet, moved, sheet_of
 from stippler.stippling.tour import tour
@@ -46,6 +46,8 @@ def plate_of(drawing: Drawing, values: Values, cancel: Callable[[], bool] | None
     sheet = for_press(sheet, values)
     if values.get("layers") == POLARITY:
         sheet = by_polarity(sheet)
+    elif values.get("layers") == PENS:
+        sheet = by_pen(sheet)
     lines = _letter(values["letter"])
     under, used_mm = _under(sheet, values, reduction)
     layers = [*sheet.layers]
@@ -66,10 +68,25 @@ def by_polarity(sheet: Sheet) -> Sheet:
             groups[-1].append(layer)
         else:
             groups.append([layer])
-    return replace(sheet, layers=tuple(map(_joined, groups)))
+    return replace(
+        sheet, layers=tuple(_joined(g, "paper" if g[0].inverse else "ink") for g in groups)
+    )
 
 
-def _joined(layers: list[Layer]) -> Layer:
+def by_pen(sheet: Sheet) -> Sheet:
+    """Return a sheet with one layer for each pen, named for it; white layers stay by themselves.
+
+    Ink may be laid in any order, so it does not matter which areas lie between.
+    """
+    white = [layer for layer in sheet.layers if layer.inverse]
+    pens: dict[str, list[Layer]] = {}
+    for layer in sheet.layers:
+        if not layer.inverse:
+            pens.setdefault(layer.pen or layer.name, []).append(layer)
+    return replace(sheet, layers=(*white, *(_joined(g, name) for name, g in pens.items())))
+
+
+def _joined(layers: list[Layer], name: str) -> Layer:
     dots = Dots(
         **{
             f.name: np.concatenate([getattr(layer.dots, f.name) for layer in layers])
@@ -78,12 +95,13 @@ def _joined(layers: list[Layer]) -> Layer:
     )
     first = layers[0]
     return Layer(
-        "paper" if first.inverse else "ink",
+        name,
         dots,
         first.inverse,
         tuple(shape for layer in layers for shape in layer.ground),
         tuple(line for layer in layers for line in layer.lines),
         tuple(shape for layer in layers for shape in layer.shapes),
+        first.pen,
     )
 
 

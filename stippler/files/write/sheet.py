@@ -54,6 +54,8 @@ class Layer:
         Paper on a ground of ink, instead of ink on paper.
     ground : tuple of Shape
         Painted first, where the layer is inverse.
+    pen : str
+        The style's; "" where that is not known, or where lines are drawn.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Layer:
     ground: tuple[Shape, ...] = ()
     lines: tuple[Line, ...] = ()
     shapes: tuple[Shape, ...] = ()
+    pen: str = ""
 
     @property
     def name_for_xml(self) -> str:
@@ -146,7 +149,7 @@ def layers_of(drawing: Drawing) -> Iterator[Layer]:
         rows = np.flatnonzero(dots.area == index)
         listed[rows] = True
         if len(rows) and not area.hidden and index not in polarity.white:
-            yield Layer(area.name, _taken(dots, rows))
+            yield Layer(area.name, _taken(dots, rows), pen=_pen_of(drawing, index))
     if not listed.all():
         yield Layer("no area", _taken(dots, np.flatnonzero(~listed)))
     every: list[Any] = [line for _, line in sorted(drawing.lines.items())]
@@ -166,7 +169,13 @@ def _inverse_layers(drawing: Drawing, polarity: Polarity) -> Iterator[Layer]:
         names = ", ".join(drawing.areas[k].name for k in ids)
         ground = shape_of(shapely.union_all([grounds[k] for k in ids]))
         rows = np.flatnonzero(np.isin(drawing.dots.area, ids))
-        yield Layer(names, drawing.dots.take(rows), inverse=True, ground=(ground,))
+        pen = _pen_of(drawing, ids[0])
+        yield Layer(names, drawing.dots.take(rows), inverse=True, ground=(ground,), pen=pen)
+
+
+def _pen_of(drawing: Drawing, area: int) -> str:
+    style = drawing.styles.get(drawing.areas[area].style)
+    return "" if style is None else style.pen
 
 
 def _touching(parts: Mapping[int, Polygon | MultiPolygon]) -> list[list[int]]:

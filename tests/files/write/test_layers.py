@@ -234,6 +234,32 @@ def test_layers_by_polarity_are_ink_and_paper(tmp_path):
     assert len(save(one, tmp_path / "b.gcode", layers="polarity")) == 1
 
 
+def test_layers_by_pen_join_areas_whose_styles_have_one_pen(tmp_path):
+    """Three areas, two pens and a line: a plotter is handed two pens, and one for the line."""
+    from conftest import SHEETS, SIZE, dots
+
+    from stippler.files.write.plate import by_pen
+    from stippler.files.write.raster import grey_strips
+    from stippler.files.write.sheet import Layer, Sheet
+
+    ink = [
+        Layer("ear", dots(30, seed=1), pen="quill"),
+        Layer("eye", dots(40, seed=2), pen="brush"),
+        Layer("wing", dots(20, seed=3), pen="quill"),
+    ]
+    sheet = Sheet(*SIZE, (*SHEETS["inverse"][1:], *ink, *SHEETS["lined"][-1:]))
+    made = by_pen(sheet)
+    n_white = sum(layer.inverse for layer in sheet.layers)
+    assert [(layer.name, len(layer.dots)) for layer in made.layers[n_white : n_white + 2]] == [
+        ("quill", 50),
+        ("brush", 40),
+    ]
+    assert made.layers[-1].lines or made.layers[-1].shapes
+    pictures = [np.concatenate(list(grey_strips(one, 200))) for one in (sheet, made)]
+    np.testing.assert_array_equal(*pictures)
+    assert len(save(drawing(), tmp_path / "a.gcode", layers="pens")) < 3
+
+
 def test_files_of_several_pens_are_written_all_or_none(tmp_path):
     """The first took its name, and the second was given up."""
     (tmp_path / "a-1-page.gcode").write_text("precious")
