@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import shapely
 
 from benchmarks.figures import Figure, median_s
+from stippler.drawing.area import Area
+from stippler.drawing.document import Document
+from stippler.drawing.dots import Dots
+from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.jobs.processing import process_now
 from stippler.stippling.halftone_area import pulses_inside
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.radii import solve_radii
@@ -15,7 +22,7 @@ from stippler.stippling.relax import Relaxation
 from stippler.stippling.spacing import TO_INK, Wanted
 from stippler.stippling.stipple import stages
 
-_N_DOTS, _STEPS, _WIDTH_MM = 2_000, 20, 200.0
+_N_DOTS, _N_OTHERS, _STEPS, _WIDTH_MM = 2_000, 200_000, 20, 200.0
 
 
 def figures(repeats: int) -> list[Figure]:
@@ -35,6 +42,10 @@ def figures(repeats: int) -> list[Figure]:
         Figure(
             f"{_N_DOTS:,} dots in an area of 16 megapixels, first dots to sizes",
             1e3 * median_s(lambda: _stippled(reference, style, area), repeats), "ms", 150.0, 60.0,
+        ),
+        Figure(
+            f"{_N_DOTS:,} dots of an area processed in a drawing of {_N_OTHERS:,}, undoable",
+            1e3 * median_s(_processing(reference, area), repeats), "ms", 150.0, 60.0,
         ),
         Figure(
             f"{_STEPS} weighted steps of them",
@@ -59,6 +70,20 @@ def _stippled(reference: Reference, style: Style, area: shapely.Polygon) -> None
     cells = engine.tessellation()
     for _ in solve_radii(engine.points, reference.darkness, first.rule, tessellation=cells):
         pass
+
+
+def _processing(reference: Reference, area: shapely.Polygon) -> Callable[[], object]:
+    """Return what processes an area of a document of many dots anew."""
+    drawing = Drawing.blank(Page(_WIDTH_MM, _WIDTH_MM), Style(n_dots=_N_OTHERS))
+    drawing.reference = reference
+    drawing.styles[1] = Style(n_dots=_N_DOTS)
+    drawing.areas[1] = Area("area", area, 1)
+    document = Document(drawing)
+    document.begin("Fill")
+    places = np.random.default_rng(0).random((_N_OTHERS, 2)) * _WIDTH_MM
+    document.insert(Dots.round(places, 0.1))
+    document.commit()
+    return lambda: process_now(document, [1])
 
 
 def _relaxed(reference: Reference, points: np.ndarray, area: shapely.Polygon) -> None:
