@@ -119,6 +119,12 @@ def test_a_line_of_a_shell(folder, line):
 STOPS = {"INT": 130, "TERM": 143, "HUP": 129}
 
 
+def not_ignored():
+    """Take signals as a shell of one's own does, even where the tests run under nohup."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("name", STOPS)
 @pytest.mark.parametrize("after_s", [0.06, 0.12, 0.2, 0.35, 0.6, 1.0, 2.0])
 def test_a_signal_at_any_moment(folder, name, after_s):
@@ -128,7 +134,7 @@ def test_a_signal_at_any_moment(folder, name, after_s):
         [sys.executable, "-m", "stippler", "render", folder / "p.png", "-o", out,
          "--dots", "30000", "--iterations", "100000"],
         stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=not_ignored,
     )  # fmt: skip
     time.sleep(after_s)
     number = getattr(signal, f"SIG{name}")
