@@ -23,7 +23,6 @@ from stippler.editor.events import (
     Scrolled,
 )
 from stippler.editor.hands import Hands
-from stippler.editor.keymap import load_keys
 from stippler.editor.lines import Lines
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.painting import Painting
@@ -33,22 +32,18 @@ from stippler.editor.schedule import Schedule
 from stippler.editor.selecting import Selecting
 from stippler.editor.session import Session
 from stippler.editor.shaping import Shaping
-from stippler.editor.tools.tool import Overlay
 from stippler.editor.view import BLANK, View
-from stippler.errors import StipplerError
 from stippler.jobs.work import PREPARE
 from stippler.jobs.worker import Worker
 from stippler.ui.actions import Parts, commands_for
-from stippler.ui.canvas.area_overlay import AreaOverlay
 from stippler.ui.canvas.canvas import MAP_EVERY_S, Canvas
-from stippler.ui.canvas.lens import LensKey, place_lens
-from stippler.ui.canvas.navigator import camera_of, draw_navigator, size_of
-from stippler.ui.canvas.overlay import draw_overlay, draw_tip_in_lens
+from stippler.ui.canvas.lens import LensKey
+from stippler.ui.canvas.over_page import OverPage
 from stippler.ui.canvas.pattern_samples import PatternSamples
 from stippler.ui.canvas.peek import Peek
 from stippler.ui.canvas.pen_samples import PenSamples
-from stippler.ui.canvas.rulers import draw_rulers
 from stippler.ui.field_commands import FieldCommands
+from stippler.ui.kept_choices import KeptChoices
 from stippler.ui.panels.areas import AreasPanel
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.dots import draw_dots
@@ -82,7 +77,6 @@ _LOW = 300.0  # likewise; in a lower panel the work is one line
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
-_KEEP_EVERY_S = 5.0  # preferences are looked at no more often than this
 _REST_FRAMES = 2  # of the panels, until what one part of a batch has opened is there for the next
 
 
@@ -114,7 +108,6 @@ class Editor:
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
-        self._area_overlay = AreaOverlay()
         self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
@@ -127,6 +120,15 @@ class Editor:
         self._pattern_samples = PatternSamples(window.ctx)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
+        self._over_page = OverPage(
+            self.look,
+            self.gui,
+            self.canvas,
+            session,
+            self.view,
+            self.painting.toolbox,
+            self.pointer,
+        )
         self._desk = DeskState(session, self.view, self.painting.toolbox)
         self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
         self.panels = Panels(
@@ -152,16 +154,15 @@ class Editor:
         self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
         self.popups.field_commands = FieldCommands(self.gui.fields, self._show_if_panel)
-        self._load_keys()
+        self._keeper = KeptChoices(kept, window, session, self.gui, self.painting.toolbox, clock())
+        self._keeper.load_keys(self.commands)
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
         self._schedule, self._rate = Schedule(), FrameRate()
         self._ratio = 1.0
         self._late: list[Event] = []  # commands for the next building of the panels
         self._preview: Preview | None = None
-        self._last_s = self._kept_s = clock()
-        self._may_have_changed = False  # since preferences were last looked at
-        self._keep_failure = ""
+        self._last_s = clock()
         self._size_px = window.size_px
 
     def _parts(self) -> Parts:
@@ -204,7 +205,7 @@ class Editor:
         events = self._window.take_events()
         if events:
             self._schedule.note_input(began)
-            self._may_have_changed = True
+            self._keeper.may_have_changed = True
         if self.session.poll() | self.area_jobs.poll() | self.popups.exporting.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
@@ -229,7 +230,7 @@ class Editor:
     def close(self) -> None:
         """Keep brushes and preferences; let go of everything on the GPU. The window stays."""
         self.painting.toolbox.save()
-        self._keep()
+        self._keeper.keep()
         self._area_worker.close()
         self.popups.close()
         self.canvas.close()
@@ -282,7 +283,7 @@ class Editor:
         name, changed = self.session.name, "*" if self.session.unsaved else ""
         self._window.title = f"{name}{changed} – Stippler" if name else "Stippler"
         if self.popups.filing.note_opened():
-            self._keep()
+            self._keeper.keep()
 
     def _build(self, events: list[Event], dt_s: float) -> None:
         """Build the window's panels once and take events meanwhile; nothing is drawn yet."""
@@ -325,9 +326,16 @@ class Editor:
         self.view.advance(dt_s)
         self._preview = self._previewed()
         self.canvas.show(area, self.view.size_px, self._preview, self.view.camera, self._ratio)
-        self._guarded("what is beside the page", lambda: self._draw_beside(area))
-        self._guarded("the brush's outline", lambda: self._draw_overlay(area))
-        self._guarded("the lens", lambda: self._draw_lens(area))
+        over, ratio = self._over_page, self._ratio
+        borders = self.panels.is_in_front(AREAS)
+        self._guarded(
+            "what is beside the page", lambda: over.draw_beside(self.widgets, area, ratio)
+        )
+        self._guarded(
+            "the brush's outline",
+            lambda: over.draw_marks(area, ratio, borders=borders),
+        )
+        self._guarded("the lens", lambda: over.draw_lens(area, ratio))
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
         self._guarded("the tools", lambda: self._draw_tools(tools))
@@ -389,45 +397,6 @@ class Editor:
     def _draw_tools(self, shape: StripShape) -> None:
         toolbox = self.painting.toolbox
         draw_tools(self.widgets, toolbox, self.commands, shape)
-
-    @property
-    def _overlay(self) -> Overlay:
-        document, camera = self.session.document, self.view.camera
-        return self.painting.toolbox.overlay(document, self.pointer.at_mm, camera.px_per_mm)
-
-    def _draw_overlay(self, area: Rect) -> None:
-        tool, document = self.painting.toolbox.tool, self.session.document
-        seen = self.panels.is_in_front(AREAS) or (tool is not None and tool.shows_areas)
-        if document is not None and seen:
-            choice = self.painting.toolbox.areas
-            self._area_overlay.draw(document, choice, self.view, area, self._ratio)
-        draw_overlay(self._overlay, self.view, area, self.gui.scale, self._ratio)
-
-    def _draw_beside(self, area: Rect) -> None:
-        """Draw the picture's half, the rulers and the navigator."""
-        look, drawing = self.look, self.session.drawing
-        if drawing is None:
-            return
-        if look.split_shown and self.session.reference is not None:
-            self.canvas.show_half(area, self.view.size_px, self.gui.scale, look.theme)
-        if look.rulers_shown:
-            draw_rulers(self.widgets, self.view, area, self._ratio, self.pointer.at_px)
-        if look.navigator_shown:
-            page = drawing.page
-            size_px = size_of(page, area, self.gui.scale, self._ratio)
-            texture = self.canvas.map_texture(camera_of(page, size_px), size_px)
-            draw_navigator(self.widgets, self.view, page, texture, area, self._ratio)
-
-    def _draw_lens(self, area: Rect) -> None:
-        at_px, tip = self.pointer.at_px, self._overlay.tip
-        if self.look.lens == "none" or at_px is None or self.session.drawing is None:
-            return
-        reach_px = tip.brush.radius_mm * self.view.camera.px_per_mm if tip else None
-        diameter_px = self.look.lens_diameter * self.gui.scale * self._ratio
-        glass = place_lens(self.view, at_px, self.look.lens_factor, diameter_px, reach_px)
-        self.canvas.show_lens(area, glass, self.gui.scale, self._ratio)
-        if tip is not None:
-            draw_tip_in_lens(tip, glass, area, self._ratio)
 
     def _draw_status(self) -> None:
         camera = self.view.camera
@@ -497,28 +466,6 @@ class Editor:
             case _:
                 self.hands.take(event, elsewhere=elsewhere)
 
-    # --- what is kept -------------------------------------------------------------------------
-
-    def _load_keys(self) -> None:
-        problems = [self._kept.problem]
-        if self._kept.folder is not None:
-            problems.append(load_keys(self._kept.folder, self.commands))
-        for problem in filter(None, problems):
-            self.session.messages.say(problem, WARNING)
-
-    def _keep(self, *, again: bool = True) -> None:
-        """Write the preferences, if they have changed; `again` repeats what has failed before."""
-        kept = self._kept
-        kept.note_values(self.session)
-        kept.place = self._window.place
-        kept.layout, kept.layout_scale = self.gui.layout, self.gui.scale
-        try:
-            kept.keep()
-        except StipplerError as error:
-            if again or str(error) != self._keep_failure:
-                self.session.messages.say(str(error), WARNING)
-            self._keep_failure = str(error)
-
     # --- what may go wrong, and what comes later ----------------------------------------------
 
     def _guarded(self, where: str, draw: Callable[[], None]) -> None:
@@ -536,18 +483,6 @@ class Editor:
         text = f"{where} failed ({type(error).__name__}: {what}); the drawing is safe"
         self.session.messages.say(text, ERROR, error)
 
-    def _keep_soon(self, now_s: float) -> None:
-        """Write brushes and preferences that have changed some seconds ago."""
-        if (at_s := self.painting.toolbox.save_soon(now_s)) is not None:
-            self._schedule.wake_at(at_s)
-        if not self._may_have_changed:
-            return
-        if now_s - self._kept_s > _KEEP_EVERY_S:
-            self._kept_s, self._may_have_changed = now_s, False
-            self._keep(again=False)
-        else:
-            self._schedule.wake_at(self._kept_s + _KEEP_EVERY_S + 0.01)
-
     def _plan_wakes(self) -> None:
         now = self._clock()
         message = self.session.messages
@@ -557,6 +492,7 @@ class Editor:
             self._schedule.wake_at(now + _CARET_S)
         if self.canvas.map_is_late:
             self._schedule.wake_at(now + MAP_EVERY_S)
-        self._keep_soon(now)
+        for at_s in self._keeper.keep_soon(now):
+            self._schedule.wake_at(at_s)
         if self.popups.dialogs.waiting or self.session.exporting:
             self._schedule.wake_at(now + _ANSWER_S)
