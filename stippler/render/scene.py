@@ -77,7 +77,7 @@ class Scene:
         selected : ids of dots
             An array that is not changed afterwards.
         hidden : ids of areas
-            Their dots are not seen.
+            Neither their dots are seen nor the grounds of those that are inverse.
 
         Notes
         -----
@@ -143,12 +143,14 @@ class Scene:
         """
         polarity, before = polarity_of(drawing), self.dots.polarity
         self.dots.polarity = polarity
-        self.grounds.set(grounds_of(drawing, polarity, partition).values(), self.origin_mm)
+        grounds = grounds_of(drawing, polarity, partition)
+        shown = [part for area, part in grounds.items() if area not in self._hidden]
+        self.grounds.set(shown, self.origin_mm)
         return polarity != before
 
     def set_drawing(self, drawing: Drawing) -> None:
         """Hold all of a drawing but its reference, as it is now."""
-        self._document = None
+        self._document, self._hidden = None, NONE
         self.set_page(drawing.page.width_mm, drawing.page.height_mm)
         self.set_polarity(drawing)
         self.set_dots(drawing.dots)

@@ -151,3 +151,16 @@ def test_a_style_turned_white_is_seen_at_once(renderer, ink, many):
 def test_dots_left_out_take_their_ground_along(renderer, ink, many):
     renderer.scene.set_drawing(night_drawing(many(24, 18, "round")))
     assert ink(Camera((20, 15), 4.0), (160, 120), dots=False).max() == 0.0
+
+
+def test_an_area_shown_alone_is_without_the_grounds_of_others(renderer, ink, many):
+    """Solo hides areas on the screen alone; the ground of an inverse one was left behind."""
+    document, camera = Document(night_drawing(many(24, 18, "round"))), Camera((20, 15), 6.0)
+    renderer.scene.sync(document, hidden=frozenset({NIGHT}))
+    alone = ink(camera, (240, 180))
+    assert alone[80:100, 30:40].max() == 0.0
+    renderer.scene.sync(document)
+    whole = ink(camera, (240, 180))
+    assert whole[80:100, 30:40].mean() > 0.3
+    renderer.scene.sync(document, hidden=frozenset({NIGHT}))
+    assert (ink(camera, (240, 180)) == alone).all()
