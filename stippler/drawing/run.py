@@ -55,9 +55,11 @@ class Run:
         if result.shape != self.position_mm.shape:
             raise ValueError("the result is not one of this run")
         dots = store.dots
+        places = np.ascontiguousarray(result, np.float64).view()
+        places.flags.writeable = False  # whoever made them: kernels are compiled for one kind
         return merge_positions(
             self._rows_in(store, locked),
-            np.ascontiguousarray(result, np.float64),
+            places,
             store.edited,
             self.base,
             dots.constraint,

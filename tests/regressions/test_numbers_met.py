@@ -7,7 +7,7 @@ from shapely.geometry import Point, Polygon, box
 
 import stippler
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling import stipple as pipeline
+from stippler.stippling import ground
 
 COARSE = Polygon([(0.4, 0.6), (3.6, 0.3), (3.2, 2.7), (0.8, 2.1)])
 
@@ -51,7 +51,7 @@ def test_dots_of_a_strip_stay_on_it(shape):
 
 
 def test_a_page_too_high_is_refused_before_the_work(monkeypatch):
-    monkeypatch.setattr(pipeline, "raster_for", None)  # the work
+    monkeypatch.setattr(ground, "raster_for", None)  # the work
     with pytest.raises(ParameterError, match="height"):
         stippler.stipple(np.full((7200, 100), 0.5), 2000, 148)
 

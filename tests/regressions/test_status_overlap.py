@@ -17,12 +17,14 @@ def test_fields_without_room_are_left_out() -> None:
     assert status.fitting(fields, 95.0) == []
 
 
-def test_a_long_message_is_read_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_message_leaves_the_last_fields_their_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path))
     monkeypatch.delenv("STIPPLER_SCALE", raising=False)
     drawn: list[int] = []
     draw = status._draw_fields
-    monkeypatch.setattr(status, "_draw_fields", lambda w, f: (drawn.append(len(f)), draw(w, f)))
+    monkeypatch.setattr(
+        status, "_draw_fields", lambda w, f, *more: (drawn.append(len(f)), draw(w, f, *more))[1]
+    )
     app = App(Style(), tone="linear", width_mm=100.0, size=(480, 400), offscreen=True)
     try:
         host = Host(app.window, app.editor, app.step)
@@ -32,4 +34,4 @@ def test_a_long_message_is_read_alone(tmp_path: Path, monkeypatch: pytest.Monkey
         host.move(300, 200)
     finally:
         app.close()
-    assert drawn[-1] == 0 < drawn[0]
+    assert drawn[-1] == status._KEPT < drawn[0]  # the message is shortened beside them

@@ -80,7 +80,7 @@ def run_by_name(desk: Desk, typed: str) -> None:
 
 def test_the_palette_runs_what_is_typed(start: Start) -> None:
     desk = start()
-    run_by_name(desk, "dark")
+    run_by_name(desk, "light or dark")
     assert desk.app.editor.look.theme is DARK
     assert not desk.app.editor.popups.palette.is_open
     desk.host.key("p", ctrl=True, shift=True)
@@ -282,7 +282,7 @@ def test_broken_settings_are_told_and_do_no_harm(start: Start, tmp_path: Path) -
 def test_a_folder_that_cannot_be_written_is_one_line(start: Start, tmp_path: Path) -> None:
     (tmp_path / "settings").write_text("in the way")
     desk = start()
-    desk.app.editor._keep()
+    desk.app.editor._keeper.keep()
     assert "settings cannot be kept" in desk.host.said()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import fields
 from pathlib import Path
 
@@ -41,12 +42,16 @@ def page_of(desk) -> np.ndarray:
     return desk.host.screenshot().astype(int)[top : top + h, left : left + w]
 
 
+_STARTS = itertools.cycle((0.3, 0.5, 0.7))
+
+
 def hold(desk, label: str, share: float) -> None:
-    """Press in the midst of a slider, and drag it to a share of its width."""
+    """Press on a slider, and drag it to a share of its width."""
     x0, y0, x1, y1 = desk.app.editor.widgets.marks[label]
-    desk.host.move(0.5 * (x0 + x1), 0.5 * (y0 + y1))
+    start = x0 + next(_STARTS) * (x1 - x0)  # two presses at one place would be a double click
+    desk.host.move(start, 0.5 * (y0 + y1))
     desk.host.press()
-    desk.host.move(0.5 * (x0 + x1) + 8.0, 0.5 * (y0 + y1))  # a press alone changes nothing
+    desk.host.move(start + 8.0, 0.5 * (y0 + y1))  # a press alone changes nothing
     desk.host.move(x0 + share * (x1 - x0), 0.5 * (y0 + y1))
     desk.host.settle()
 

@@ -58,11 +58,15 @@ def display() -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def places() -> Iterator[dict[str, tuple[float, float]]]:
-    """Where the controls are, found in the same editor without a display."""
-    app = App(Style(), tone="linear", width_mm=148.0, size=SIZE, offscreen=True)
+def places(picture: Path) -> Iterator[dict[str, tuple[float, float]]]:
+    """Where the controls are while a picture is open, in the same editor without a display."""
+    style = Style(n_dots=200, iterations=3)
+    app = App(style, tone="linear", width_mm=148.0, size=SIZE, offscreen=True)
     try:
         host = Host(app.window, app.editor, app.step)
+        host.drop(picture)
+        host.until(lambda: app.session.phase == "done", "the drawing")
+        host.settle()
         yield {label: host.place(label) for label in app.editor.widgets.marks}
     finally:
         app.close()

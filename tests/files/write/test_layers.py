@@ -213,7 +213,7 @@ def test_the_api_tells_the_files(tmp_path):
 
 def test_layers_by_polarity_are_ink_and_paper(tmp_path):
     """One file for a plotter's one pen, whatever the areas; dots of a white layer stay white."""
-    from conftest import SHEETS, SIZE, dots
+    from sheets_tried import SHEETS, SIZE, dots
 
     from stippler.files.write.plate import by_polarity
     from stippler.files.write.raster import grey_strips
@@ -236,7 +236,7 @@ def test_layers_by_polarity_are_ink_and_paper(tmp_path):
 
 def test_layers_by_pen_join_areas_whose_styles_have_one_pen(tmp_path):
     """Three areas, two pens and a line: a plotter is handed two pens, and one for the line."""
-    from conftest import SHEETS, SIZE, dots
+    from sheets_tried import SHEETS, SIZE, dots
 
     from stippler.files.write.plate import by_pen
     from stippler.files.write.raster import grey_strips

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 sys.path.insert(0, str(Path(__file__).parent))
 import consumers
-from conftest import SIZE
+from sheets_tried import SIZE
 
 from stippler.drawing.dots import Dots
 from stippler.files.write.formats import format_of

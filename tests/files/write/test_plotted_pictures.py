@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 
 sys.path.insert(0, str(Path(__file__).parent))
 import consumers
-from conftest import SHEETS, SIZE
+from sheets_tried import SHEETS, SIZE
 from test_plotters import gcode_strokes, hpgl_strokes, text_of
 
 from stippler.files.write.pen_paths import paths_of

@@ -12,7 +12,7 @@ import vpype
 from scipy.spatial import cKDTree
 
 sys.path.insert(0, str(Path(__file__).parent))
-from conftest import SHEETS, SIZE, dots
+from sheets_tried import SHEETS, SIZE, dots
 
 from stippler.files.write.formats import format_of
 from stippler.files.write.options import checked

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parent))
-from conftest import SHEETS, SIZE
+from sheets_tried import SHEETS, SIZE
 
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page

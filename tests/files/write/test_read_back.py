@@ -10,7 +10,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 import consumers
-from conftest import SHEETS, SIZE
+from sheets_tried import SHEETS, SIZE
 
 from stippler.files.write.formats import format_of
 from stippler.files.write.options import checked
