@@ -17,7 +17,9 @@ def test_fields_without_room_are_left_out() -> None:
     assert status.fitting(fields, 95.0) == []
 
 
-def test_a_long_message_leaves_the_last_fields_their_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_message_leaves_the_last_fields_their_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path))
     monkeypatch.delenv("STIPPLER_SCALE", raising=False)
     drawn: list[int] = []
