@@ -20,7 +20,7 @@ _ROUNDS = 5
 _BAND = 3.0  # mean spacings; dots that moves across the edge may come close to
 _CELLS = 6.0  # mean spacings; dots whose cells bound those of dots at the edge
 _NEAR = 1.6  # radii; dots so near the edge may come to touch it
-_LINE = 0.2  # radii; how far inside the edge the ink is compared, whatever the pixels
+_LINE = 0.15  # radii; how far inside the edge the ink is compared, whatever the pixels
 
 
 def part_close(

@@ -247,6 +247,7 @@ class Editor:
         self._window.renew()
         self.gui.join()
         self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self._over_page.canvas = self.canvas
         self.popups.recovery.renew(self._window.ctx)
 
     # --- one frame --------------------------------------------------------------------------

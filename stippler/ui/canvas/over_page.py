@@ -35,7 +35,7 @@ class OverPage:
         toolbox: Toolbox,
         pointer: Pointer,
     ) -> None:
-        self._look, self._gui, self._canvas, self._session = look, gui, canvas, session
+        self._look, self._gui, self.canvas, self._session = look, gui, canvas, session
         self._view, self._toolbox, self._pointer = view, toolbox, pointer
         self._areas = AreaOverlay()
 
@@ -58,13 +58,13 @@ class OverPage:
         if drawing is None:
             return
         if look.split_shown and self._session.reference is not None:
-            self._canvas.show_half(area, self._view.size_px, self._gui.scale, look.theme)
+            self.canvas.show_half(area, self._view.size_px, self._gui.scale, look.theme)
         if look.rulers_shown:
             draw_rulers(widgets, self._view, area, ratio, self._pointer.at_px)
         if look.navigator_shown:
             page = drawing.page
             size_px = size_of(page, area, self._gui.scale, ratio)
-            texture = self._canvas.map_texture(camera_of(page, size_px), size_px)
+            texture = self.canvas.map_texture(camera_of(page, size_px), size_px)
             draw_navigator(widgets, self._view, page, texture, area, ratio)
 
     def draw_lens(self, area: Rect, ratio: float) -> None:
@@ -75,6 +75,6 @@ class OverPage:
         reach_px = tip.brush.radius_mm * self._view.camera.px_per_mm if tip else None
         diameter_px = self._look.lens_diameter * self._gui.scale * ratio
         glass = place_lens(self._view, at_px, self._look.lens_factor, diameter_px, reach_px)
-        self._canvas.show_lens(area, glass, self._gui.scale, ratio)
+        self.canvas.show_lens(area, glass, self._gui.scale, ratio)
         if tip is not None:
             draw_tip_in_lens(tip, glass, area, ratio)
