@@ -1,6 +1,8 @@
 """Memory that runs out and exceptions anywhere leave the drawing whole, saveable, recoverable."""
 
+import itertools
 import logging
+import time
 
 import moderngl
 import numpy as np
@@ -97,7 +99,7 @@ def undo(app, host):
 
 
 def autosave(app, host):
-    app.session.saving._clock = iter(range(0, 10**7, 10_000)).__next__
+    app.session.saving._clock = itertools.count(time.monotonic() + 10_000.0, 10_000.0).__next__
     for _ in range(3):
         app.session.poll()
     app.session.saving.wait()

@@ -285,7 +285,7 @@ def test_recent_files_are_shown_by_their_pictures(kept, drawing, picture: Path, 
     host.until(lambda: app.editor.popups.recent.is_ready, "the pictures")
     host.settle()
     kept_pictures = app.editor.popups.recent._pictures
-    assert all(kept.texture is not None for kept in kept_pictures.values())
+    host.until(lambda: all(one.texture is not None for one in kept_pictures.values()), "all drawn")
     host.click("shelf 1")
     host.until(lambda: app.session.exports.file == path, "the drawing")
     assert app.session.n_dots == 400
