@@ -13,7 +13,6 @@ from stippler.drawing.planar.path import Path
 from stippler.drawing.planar.planar_map import OUTSIDE, PlanarMap
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
-from stippler.stippling.borders import Borders
 from stippler.stippling.halftone_area import pulses_inside
 from stippler.stippling.lines import adhere, adhering, keeping_distance
 from stippler.stippling.picture_field import PictureField
@@ -86,7 +85,3 @@ def use_areas() -> None:
     cells = engine.tessellation()
     for _, _radii in solve_radii(engine.points, ramp, first.rule, tessellation=cells):
         pass
-    edge = shapely.get_coordinates(ring.exterior)
-    borders = Borders.of(ring, [(edge, "bleed")])
-    kept, places = borders.trimmed(first.position_mm, first.radius_mm)
-    borders.rim_evened(places, first.radius_mm[kept], reference.at, 0.3)

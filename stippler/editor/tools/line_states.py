@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from stippler.editor.events import LEFT, Event, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.line_edits import add_line, lines_of, meet, set_line
 from stippler.editor.messages import WARNING
+from stippler.editor.tools.drag import Drag
 from stippler.editor.tools.tool import (
     NOTHING,
     RESTING,
@@ -252,27 +253,13 @@ class Freehand:
 
 
 @dataclass(slots=True)
-class Moving:
+class Moving(Drag):
     """A line follows the pointer, with the dots on it."""
 
     k: int
     start: Point
     before: Line | None = None
     overlay = NOTHING
-
-    def take(self, event: Event, desk: Desk) -> ToolState:
-        """Follow the pointer until the button comes up, or Escape puts it back."""
-        match event:
-            case Moved():
-                self._follow(desk.at(event), desk)
-            case Released(button=button) if button == LEFT:
-                return self._let_go(desk)
-            case KeyDown(key="escape"):
-                self.cancel(desk)
-                return RESTING
-            case FocusLost():
-                return self._let_go(desk)
-        return self
 
     def _follow(self, at: Point, desk: Desk) -> None:
         from stippler.drawing.deformation import Deformation

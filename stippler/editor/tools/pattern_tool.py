@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.brushes.kinds import Parameter
-from stippler.editor.events import LEFT, Event, FocusLost, KeyDown, Moved, Pressed, Released
+from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.messages import WARNING
 from stippler.editor.tools import bending
+from stippler.editor.tools.drag import Drag
 from stippler.editor.tools.tool import (
     NOTHING,
     RESTING,
@@ -138,7 +139,7 @@ def _set(document: Document, k: int, pattern: Pattern, label: str) -> None:
 
 
 @dataclass(slots=True)
-class Bending:
+class Bending(Drag):
     """A grip of the pattern follows the pointer; the pattern and its dots are there meanwhile."""
 
     k: int
@@ -151,20 +152,6 @@ class Bending:
     first: Deformation | None = None
     now: Deformation | None = None
     dots: Taken | None = None
-
-    def take(self, event: Event, desk: Desk) -> ToolState:
-        """Follow the pointer until the button comes up, or Escape puts all back."""
-        match event:
-            case Moved():
-                self._follow(desk.at(event), desk)
-            case Released(button=button) if button == LEFT:
-                return self._let_go(desk)
-            case KeyDown(key="escape"):
-                self.cancel(desk)
-                return RESTING
-            case FocusLost():
-                return self._let_go(desk)
-        return self
 
     def _follow(self, at: Point, desk: Desk) -> None:
         from stippler.drawing.deformation import before_fold

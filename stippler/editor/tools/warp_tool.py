@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.brushes.kinds import Parameter
-from stippler.editor.events import LEFT, Event, FocusLost, KeyDown, Moved, Pressed, Released
+from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.line_edits import lines_of, meet, set_line
 from stippler.editor.messages import WARNING
 from stippler.editor.tools import bending
+from stippler.editor.tools.drag import Drag
 from stippler.editor.tools.tool import (
     NOTHING,
     RESTING,
@@ -153,7 +154,7 @@ class WarpTool(Tool):
 
 
 @dataclass(slots=True)
-class Warping:
+class Warping(Drag):
     """A point of the cage follows the pointer, and dots and lines with it; borders at the end."""
 
     tool: WarpTool
@@ -166,20 +167,6 @@ class Warping:
     places: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
     radii: NDArray[np.float32] = field(default_factory=lambda: np.empty(0, np.float32))
     lines: dict[int, Line] = field(default_factory=dict)
-
-    def take(self, event: Event, desk: Desk) -> ToolState:
-        """Follow the pointer until the button comes up, or Escape puts all back."""
-        match event:
-            case Moved():
-                self._follow(desk.at(event), desk)
-            case Released(button=button) if button == LEFT:
-                return self._let_go(desk)
-            case KeyDown(key="escape"):
-                self.cancel(desk)
-                return RESTING
-            case FocusLost():
-                return self._let_go(desk)
-        return self
 
     def _follow(self, at: Point, desk: Desk) -> None:
         from stippler.drawing.deformation import before_fold

@@ -129,15 +129,3 @@ def with_profile(given: Mapping[str, Any], own: tuple[str, ...]) -> dict[str, An
         if value is not None and values.get(key) is None and (key == "print_width" or key in own):
             values[key] = value
     return values
-
-
-def profile_lines() -> list[str]:
-    """Return a line for each profile, for a person."""
-    lines = []
-    for name, one in profiles().items():
-        widths = ", ".join(f"{column} {width:g} mm" for column, width in one.widths_mm.items())
-        demands = [widths, f"{one.dpi:g} dpi" if one.dpi else "", ", ".join(one.files)]
-        lines.append(
-            f"{name}: {one.title}; {'; '.join(d for d in demands if d) or 'see its source'}"
-        )
-    return lines

@@ -125,11 +125,10 @@ def test_print_width_and_profile(tmp_path):
 
 
 def test_profiles_have_sources():
-    from stippler.files.write.profiles import profile_lines, profiles
+    from stippler.files.write.profiles import profiles
 
     assert len(profiles()) >= 12
     assert all(one.source and one.read for one in profiles().values())
-    assert len(profile_lines()) == len(profiles())
 
 
 def test_a_plate_has_bar_marks_caption_and_letter(tmp_path):
