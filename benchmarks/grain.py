@@ -29,6 +29,7 @@ from stippler.stippling.pipeline import run
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.stipple import stages
 from stippler.stippling.task import RELAX, Standing, Task
+from stippler.stippling.transport import evened_out
 
 GREYS = {"light": 0.15, "middle": 0.4, "dark": 0.73}
 SIDE = 1000
@@ -63,6 +64,7 @@ def figures(quick: bool = False) -> list[Figure]:
                 results.append(Figure(label, value, "", *promised, key in _HIGHER))  # type: ignore[call-arg]
     results += [_rows_in_windows(name) for name in ("honey-bee.jpg", "ammonite.png")]
     results += _steps_of_the_wedge()
+    results += _from_chance()
     results += _after_many_steps()
     results += _relax_all(1 if quick else 10)
     results.append(_step_against_lloyd(3 if quick else 9))
@@ -144,6 +146,30 @@ def _steps_of_the_wedge(n: int = 10_000) -> list[Figure]:
         Figure("wedge, within a step: min_rel", min(least), "", 0.40, 0.55, True, note),
         Figure("wedge, within a step: rel_nn_cv", max(variation), "", 0.13, 0.11, note=note),
     ]
+
+
+def _from_chance(n: int = 10_000, steps: int = 20) -> list[Figure]:
+    """Measure clouds of dots by chance after some steps, with and without transport before them."""
+    side = 100.0
+    xy = np.random.default_rng(1).random((n, 2)) * side
+    results = []
+    for name, start in (
+        ("alone", xy),
+        ("after transport", evened_out(xy, np.ones((200, 200)), 0.5)),
+    ):
+        engine = Relaxation(start, box(0, 0, side, side), method="even")
+        for _ in range(steps):
+            engine.step()
+        clouds = measure_grain(engine.points).clouds
+        label = f"dots by chance, {steps} steps {name}: clouds"
+        results.append(Figure(label, clouds, "", *_PROMISED["clouds"] if start is not xy else ()))
+    for n_dots in (100_000, 1_000_000):
+        xy = np.random.default_rng(1).random((n_dots, 2)) * side
+        began = time.process_time()
+        evened_out(xy, np.ones((200, 200)), 0.5)
+        spent = time.process_time() - began
+        results.append(Figure(f"transport of {n_dots:,} dots, processor time", spent, "s"))
+    return results
 
 
 def _after_many_steps(n: int = 10_000, steps: int = 320) -> list[Figure]:
