@@ -1,4 +1,4 @@
-"""Lets coverage note what each test goes through: ``coverage run -m pytest -p tests.long.contexts``."""
+"""A plugin of pytest: lets coverage note which test goes through which line (`make coverage`)."""
 
 from collections.abc import Iterator
 

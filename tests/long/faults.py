@@ -82,9 +82,8 @@ def _changes(node: ast.AST) -> Iterator[tuple[ast.AST, str, Change]]:
     for what, change in _of_node(node):
         yield node, what, change
     for name, value in ast.iter_fields(node):
-        if name in ("annotation", "returns", "decorator_list", "type_comment", "bases", "keywords"):
-            if not isinstance(node, ast.Call) or name != "keywords":
-                continue
+        if name in ("annotation", "returns", "decorator_list", "bases"):
+            continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
                 yield from _changes(child)

@@ -25,6 +25,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
@@ -109,7 +110,7 @@ def contexts(file: Path) -> dict[str, dict[int, set[str]]]:
     data.read()
     return {
         path: {
-            line: {name for name in names if name}
+            line: {name for name in names if name.startswith("tests/")}
             for line, names in data.contexts_by_lineno(path).items()
         }
         for path in data.measured_files()
@@ -255,12 +256,13 @@ class _Loader(SourceFileLoader):
 
 def _warm_up() -> None:
     """Import what every test needs and no fault lies in."""
-    import hypothesis.strategies
-    import scipy.spatial
-    import shapely  # noqa: F401
-
-    import stippler.kernels.machine.pool  # noqa: F401
-
+    for name in (
+        "hypothesis.strategies",
+        "scipy.spatial",
+        "shapely",
+        "stippler.kernels.machine.pool",
+    ):
+        import_module(name)
     assert not any(name.startswith(("stippler.drawing", "stippler.files")) for name in sys.modules)
 
 
