@@ -127,7 +127,9 @@ class TestNodes:
         out = np.array(nodes.handles_at(turned, node_at(turned, 10, 0))["out"]) - (10, 0)
         assert out == pytest.approx((0.0, -np.hypot(*before)))
         free = nodes.move_handle(path, k, "in", (10.0, 3.0), free=True)
-        assert nodes.handles_at(free, node_at(free, 10, 0))["out"] == pytest.approx(before + (10, 0))
+        assert nodes.handles_at(free, node_at(free, 10, 0))["out"] == pytest.approx(
+            before + (10, 0)
+        )
         other = nodes.move_handle(path, k, "out", (14.0, 0.0))
         handle = nodes.handles_at(other, node_at(other, 10, 0))["in"]
         assert handle[0] < 10

@@ -24,6 +24,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.abc import MetaPathFinder
@@ -39,7 +40,10 @@ from tests.long.faults import Fault, faults_of, with_fault
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("stippler/files", "stippler/drawing")
-MOST_S, MOST_TESTS_S, MOST_BYTES = 60.0, 20.0, 6 << 30
+FAULTY = ("stippler.files", "stippler.drawing")
+MOST_S = float(os.environ.get("MUTANT_S", "60"))
+MOST_TESTS_S = MOST_S / 3
+MOST_BYTES = 6 << 30
 
 
 def main(words: Sequence[str]) -> None:
@@ -160,7 +164,7 @@ def _tests_file(file: Path) -> Path:
 def _judge_all(faults: Sequence[Fault], file: Path) -> None:
     seconds = json.loads(_tests_file(file).read_text())
     covering = Covering(contexts(ROOT / ".coverage"), seconds)
-    _warm_up()
+    _warm_up(list(seconds))
     for n, fault in enumerate(faults):
         began = time.monotonic()
         end, by = judge(fault, covering)
@@ -254,16 +258,20 @@ class _Loader(SourceFileLoader):
         return compile(with_fault(Path(self.path), self._fault.number), self.path, "exec")
 
 
-def _warm_up() -> None:
-    """Import what every test needs and no fault lies in."""
-    for name in (
-        "hypothesis.strategies",
-        "scipy.spatial",
-        "shapely",
-        "stippler.kernels.machine.pool",
-    ):
-        import_module(name)
-    assert not any(name.startswith(("stippler.drawing", "stippler.files")) for name in sys.modules)
+def _warm_up(tests: Sequence[str]) -> None:
+    """Import what tests need and no fault lies in, so that it is not done for each fault."""
+    files = sorted({name.split("::")[0] for name in tests})
+    for name in _in_child(lambda: _imported_by(files), None, 300.0) or ():
+        with suppress(Exception):
+            import_module(name)
+    assert not any(name.startswith(FAULTY) for name in sys.modules)
+
+
+def _imported_by(files: Sequence[str]) -> list[str]:
+    """Return the modules that tests import, but for those that depend on what has faults."""
+    pytest.main(["-q", "--collect-only", "-p", "no:cacheprovider", "-p", "no:xdist", *files])
+    ours = ("stippler", "tests", "benchmarks", "__")
+    return [n for n in sys.modules if n.startswith("stippler.kernels") or not n.startswith(ours)]
 
 
 # --- the score ----------------------------------------------------------------------------------
