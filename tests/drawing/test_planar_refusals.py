@@ -270,7 +270,7 @@ class TestDamagedMaps:
             {"unit_mm": 1.0}, {"arcs": None}, {"arcs": {"x": {}}}, {"next_arc": "x"},
             {"next_arc": 1}, {"next_area": 2},
         ):  # fmt: skip
-            with pytest.raises(GeometryError, match="another grid|cannot be read|not yet given"):
+            with pytest.raises(GeometryError, match=r"another grid|cannot be read|not yet given"):
                 PlanarMap.from_json(json_of(two) | damage)
 
     def test_areas_that_cross_themselves_or_each_other_are_found(self, page):
