@@ -7,6 +7,7 @@ multiply matrices. Ours do not. A program that is nothing but Stippler asks for 
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,9 +24,21 @@ def skip_blas() -> None:
     _wanted = True
 
 
+def drop_useless_variables() -> None:
+    """Take away a number of threads with which numba could not be imported at all.
+
+    Our kernels never start its threads.
+    """
+    asked = os.environ.get("NUMBA_NUM_THREADS", "").strip()
+    if asked.lstrip("+-").isdigit() and int(asked) < 1:
+        del os.environ["NUMBA_NUM_THREADS"]
+
+
 @contextmanager
 def importing_numba() -> Iterator[None]:
     """Hide the BLAS while numba looks for it, if that was asked for."""
+    if "numba" not in _modules:
+        drop_useless_variables()
     if not _wanted or _PROBE in _modules:
         yield
         return
