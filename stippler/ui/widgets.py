@@ -11,6 +11,7 @@ import contextlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from imgui_bundle import imgui
 
@@ -192,7 +193,7 @@ class Widgets:
         beside : bool
             To the right of the control; else below it, or above where there is no room.
         """
-        if imgui.is_item_active() or not imgui.is_item_hovered(_EXPLAINED):
+        if not imgui.is_item_hovered(_EXPLAINED) or imgui.is_item_active():
             return
         if self.why_off:
             text = f"{self.why_off}\n{text}"
@@ -235,7 +236,7 @@ class Widgets:
     @staticmethod
     def packed(colour: Colour, alpha: float = 1.0) -> int:
         """Return a colour as draw lists take it."""
-        return int(imgui.color_convert_float4_to_u32((*colour, alpha)))
+        return _packed(colour, alpha)
 
     # --- keys of the popup that is drawn ------------------------------------------------------
 
@@ -479,3 +480,8 @@ class Widgets:
         draw = imgui.get_window_draw_list()
         low, high = draw.get_clip_rect_min(), draw.get_clip_rect_max()
         self.rooms[label] = (low.x, low.y, high.x, high.y)
+
+
+@lru_cache(maxsize=256)
+def _packed(colour: Colour, alpha: float) -> int:
+    return int(imgui.color_convert_float4_to_u32((*colour, alpha)))
