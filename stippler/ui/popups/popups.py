@@ -41,6 +41,7 @@ class Popups:
         session: Session,
         kept: Preferences,
         toolbox: Toolbox,
+        px_per_mm: Callable[[], float],
         *,
         use_native: bool,
     ) -> None:
@@ -74,7 +75,7 @@ class Popups:
         self.scale = ScaleDrawing(session)
         self.sheet = Sheet()
         self.preferences = PreferencesWindow(kept, self._keep_keys, lambda: window.scale)
-        self.context = ContextPalette(toolbox)
+        self.context = ContextPalette(toolbox, px_per_mm)
         self.commands: Commands | None = None
 
     @property
