@@ -42,6 +42,7 @@ from stippler.ui.canvas.over_page import OverPage
 from stippler.ui.canvas.peek import Peek
 from stippler.ui.field_commands import FieldCommands
 from stippler.ui.kept_choices import KeptChoices
+from stippler.ui.panels.brush_radius import tool_hint
 from stippler.ui.panels.contents import Contents, Subjects
 from stippler.ui.panels.docks import Panels
 from stippler.ui.panels.layout import AREAS, SHAPE, Layout
@@ -112,7 +113,9 @@ class Editor:
             self.pointer,
         )
         self._desk = DeskState(session, self.view, self.painting.toolbox)
-        self.popups = Popups(window, session, kept, self.painting.toolbox, use_native=native)
+        self.popups = Popups(
+            window, session, kept, self.painting.toolbox, self._px_per_mm, use_native=native
+        )
         subjects = Subjects(
             session,
             self.look,
@@ -181,7 +184,7 @@ class Editor:
         began = self._clock()
         events = self._window.take_events()
         if events:
-            self._schedule.note_input(began)
+            self._schedule.note_input()
             self._keeper.may_have_changed = True
         if self.session.poll() | self.area_jobs.poll() | self.popups.poll():
             self._schedule.note_result()
@@ -330,6 +333,10 @@ class Editor:
         self._guarded("the writing", lambda: self._writing.draw(self.widgets, exports, area))
         self.popups.draw(self.widgets, self._guarded)
 
+    def _px_per_mm(self) -> float:
+        """Return how many of the pixels that sizes are told in a mm on the page takes."""
+        return self.view.camera.px_per_mm
+
     def _show_if_panel(self, name: str) -> None:
         if name in self.panels.names:
             self.show_panel(name)
@@ -337,7 +344,7 @@ class Editor:
     def show_panel(self, name: str) -> None:
         """Bring a panel to the front."""
         self.panels.show(name)
-        self._schedule.note_input(self._clock())
+        self._schedule.note_input()
 
     def reset_panels(self) -> None:
         """Show every panel where it was at first."""
@@ -352,23 +359,10 @@ class Editor:
         camera = self.view.camera
         zoom = camera.px_per_mm / self._window.px_per_mm
         sight = Sight(camera, self.pointer.at_mm, zoom, self.look.dots_shown)
-        typed = draw_status(
-            self.widgets, self.session, sight, self._rate, self.commands, self._hint()
-        )
+        hint = tool_hint(self.painting.toolbox, self._px_per_mm())
+        typed = draw_status(self.widgets, self.session, sight, self._rate, self.commands, hint)
         if typed is not None:
             self.view.zoom_to(typed * self._window.px_per_mm)
-
-    def _hint(self) -> str:
-        """Return what the tool at hand does, and how large its tip is on the screen."""
-        toolbox = self.painting.toolbox
-        if toolbox.tool is None:
-            return ""
-        brush = toolbox.brush
-        if brush is None or not brush.about.has_tip:
-            return f"{toolbox.tool.label}: {toolbox.tool.tip}"
-        px = 2.0 * brush.radius_mm * self.view.camera.px_per_mm
-        size = f"{px:,.0f}" if px >= 10.0 else f"{px:.1f}"
-        return f"{toolbox.tool.label}, {size} px wide on the screen: {toolbox.tool.tip}"
 
     def _previewed(self) -> Preview | None:
         """Return the change that is held in a panel, or that the brush or the style will make."""
@@ -440,6 +434,8 @@ class Editor:
             self._schedule.wake_at(now + message.left_s + 0.01)
         if self.gui.wants_keys:
             self._schedule.wake_at(now + _CARET_S)
+        if (rest_s := self.gui.tooltip_in_s) > 0.0:
+            self._schedule.wake_at(now + rest_s)
         if self.canvas.map_is_late:
             self._schedule.wake_at(now + MAP_EVERY_S)
         for at_s in self._keeper.keep_soon(now):

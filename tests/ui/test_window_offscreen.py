@@ -12,6 +12,7 @@ from PIL import Image
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.jobs.work import Source, Work
+from stippler.ui.panels import contents
 from stippler.ui.panels.layout import VIEW
 from stippler.ui.theme import DARK, LIGHT
 

@@ -94,7 +94,8 @@ class Contents:
 
     def _draw_tool(self) -> None:
         (widgets, commands), toolbox = self._frame(), self._of.painting.toolbox
-        draw_tool(widgets, toolbox, commands, self._of.painting.n_selected)
+        px_per_mm = self._of.view.camera.px_per_mm
+        draw_tool(widgets, toolbox, commands, self._of.painting.n_selected, px_per_mm)
         if toolbox.name in self._of_tools:
             widgets.rule()
             self._of_tools[toolbox.name]()

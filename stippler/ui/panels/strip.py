@@ -104,5 +104,5 @@ def draw_tool(
     colour = widgets.packed(theme.on_accent if used else theme.text)
     draw_icon(name, command.label, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
     widgets.note(f"{mark}{command.label}")
-    widgets.tip(f"{command.hint}\n{tip}", beside=not mark)
+    widgets.tip(f"{command.hint}\n{tip}")
     return pressed

@@ -64,10 +64,12 @@ class Popups:
         session: Session,
         kept: Preferences,
         toolbox: Toolbox,
+        px_per_mm: Callable[[], float],
         *,
         use_native: bool,
     ) -> None:
         self._window, self._session, self._kept, self._toolbox = window, session, kept, toolbox
+        self._px_per_mm = px_per_mm
         self.dialogs = Dialogs(use_native=use_native)
         self.filing = Filing(session, self.dialogs, kept, window.end)
         self.filing.ask_export = lambda path: self.exporting.ask(path)
@@ -162,7 +164,7 @@ class Popups:
         """Offers tools at the pointer."""
         from stippler.ui.popups.context import ContextPalette
 
-        return ContextPalette(self._toolbox)
+        return ContextPalette(self._toolbox, self._px_per_mm)
 
     def _made(self, names: dict[str, str]) -> dict[str, Any]:
         """Return those that were asked for, by what a fault in each is called."""
