@@ -238,7 +238,7 @@ def _own_and_all(
             prepare()
             app.window.ctx.finish()
             gl.spent_s, began = 0.0, time.perf_counter()
-            app.editor._schedule.note_input(0.0)
+            app.editor._schedule.note_input()
             app.editor.step()
             spent = time.perf_counter() - began
             app.window.ctx.finish()

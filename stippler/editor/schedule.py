@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 _FRAMES_AFTER_INPUT = 5  # a click takes ImGui three: move, press, release; then it settles
-_TOOLTIP_S = 0.5  # a resting pointer may want its tooltip after this
 _LONGEST_SLEEP_S = 10.0
 _LONGEST_REST_S = 0.25
 _FREE_S = 0.02  # frames this fast need no rest
@@ -22,12 +21,11 @@ class Schedule:
         self._frames = _FRAMES_AFTER_INPUT
         self._waiting = False  # a worker's result has not been shown yet
         self._not_before_s = -math.inf
-        self._wake_at_s = self._tooltip_at_s = math.inf
+        self._wake_at_s = math.inf
 
-    def note_input(self, now_s: float) -> None:
+    def note_input(self) -> None:
         """Take note of something that a person did."""
         self._frames = _FRAMES_AFTER_INPUT
-        self._tooltip_at_s = now_s + _TOOLTIP_S  # the last motion counts: then the pointer rests
 
     def note_result(self) -> None:
         """Take note that a worker has something to show."""
@@ -45,8 +43,6 @@ class Schedule:
         self._not_before_s = ended_s + min(cost, _LONGEST_REST_S) if cost > _FREE_S else -math.inf
         if self._wake_at_s <= ended_s:
             self._wake_at_s = math.inf
-        if self._tooltip_at_s <= began_s:
-            self._tooltip_at_s = math.inf
 
     @property
     def idle(self) -> bool:
@@ -55,7 +51,7 @@ class Schedule:
 
     def due(self, now_s: float) -> bool:
         """Return whether a frame is to be drawn now."""
-        if self._frames > 0 or now_s >= min(self._wake_at_s, self._tooltip_at_s):
+        if self._frames > 0 or now_s >= self._wake_at_s:
             return True
         return self._waiting and now_s >= self._not_before_s
 
@@ -63,7 +59,7 @@ class Schedule:
         """Return how long to wait for events before the next frame; 0 is not at all."""
         if self.due(now_s):
             return 0.0
-        until = min(self._wake_at_s, self._tooltip_at_s)
+        until = self._wake_at_s
         if self._waiting:
             until = min(until, self._not_before_s)
         return min(max(until - now_s, 0.0), _LONGEST_SLEEP_S)

@@ -17,11 +17,12 @@ from imgui_bundle import imgui
 from stippler.editor.number_steps import Scale
 from stippler.ui.fields import CHECK, CHOICE, Fields
 from stippler.ui.number_control import About, Numbers, draw_number
-from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
+from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme, packed
 
 Rect = tuple[float, float, float, float]
 LABEL_WIDTH = 84.0
 _NARROW = 250.0  # the theme's pixels; in panels that are no wider, labels stand above controls
+_TIP_WIDTH = 280.0  # the theme's pixels
 _SMALLEST = 0.62  # of the size of text, for a label that finds no room
 _EXPLAINED = imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled
 _FORM = re.compile(r"%\+?\.(\d)f ?(.*)")
@@ -184,37 +185,41 @@ class Widgets:
         imgui.same_line(self.indent)
         imgui.set_next_item_width(-1.0)
 
-    def tip(self, text: str, *, beside: bool = False) -> None:
+    def tip(self, text: str) -> None:
         """Explain the last control while the pointer rests on it, and does not hold it.
 
-        Parameters
-        ----------
-        beside : bool
-            To the right of the control; else below it, or above where there is no room.
+        Beside the control's window, so that it covers no neighbour; where there is no room, below
+        the control or above it.
         """
-        if imgui.is_item_active() or not imgui.is_item_hovered(_EXPLAINED):
+        if not imgui.is_item_hovered(_EXPLAINED) or imgui.is_item_active():
             return
         if self.why_off:
             text = f"{self.why_off}\n{text}"
-        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        gap = 4.0 * self.scale
-        size = imgui.calc_text_size(text, wrap_width=280.0 * self.scale)
-        right, bottom = imgui.get_main_viewport().size
-        left = max(min(low.x, right - size.x - 24.0 * self.scale), 0.0)
-        is_low = high.y + gap + size.y + 14.0 * self.scale > bottom
-        if beside:
-            imgui.set_next_window_pos((high.x + gap, low.y))
-        elif is_low:
-            imgui.set_next_window_pos((left, low.y - gap), imgui.Cond_.always, (0.0, 1.0))
-        else:
-            imgui.set_next_window_pos((left, high.y + gap))
-        imgui.push_style_var(imgui.StyleVar_.window_padding, (10 * self.scale, 7 * self.scale))
+        pad = (10.0 * self.scale, 7.0 * self.scale)
+        size = imgui.calc_text_size(text, wrap_width=_TIP_WIDTH * self.scale)
+        place = self._tip_place(size.x + 2 * pad[0], size.y + 2 * pad[1])
+        imgui.set_next_window_pos(place)
+        imgui.push_style_var(imgui.StyleVar_.window_padding, pad)
         if imgui.begin_tooltip():
-            imgui.push_text_wrap_pos(280.0 * self.scale)
+            imgui.push_text_wrap_pos(_TIP_WIDTH * self.scale)
             imgui.text_unformatted(text)
             imgui.pop_text_wrap_pos()
             imgui.end_tooltip()
         imgui.pop_style_var()
+
+    def _tip_place(self, width: float, height: float) -> tuple[float, float]:
+        """Return where the last control's tooltip begins."""
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        screen, gap = imgui.get_main_viewport().size, 4.0 * self.scale
+        window = imgui.internal.get_current_window().root_window
+        top = max(min(low.y, screen.y - height), 0.0)
+        if window.pos.x + window.size.x + gap + width <= screen.x:
+            return window.pos.x + window.size.x + gap, top
+        if window.pos.x - gap - width >= 0.0:
+            return window.pos.x - gap - width, top
+        left = max(min(low.x, screen.x - width), 0.0)
+        is_low = high.y + gap + height > screen.y
+        return left, low.y - gap - height if is_low else high.y + gap
 
     def icon_button(self, name: str, icon: str, tip: str) -> bool:
         """Draw a square button with a sign and no text."""
@@ -232,10 +237,7 @@ class Widgets:
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 5.0 * self.scale)
         return self.icon_button(name, icon, tip)
 
-    @staticmethod
-    def packed(colour: Colour, alpha: float = 1.0) -> int:
-        """Return a colour as draw lists take it."""
-        return int(imgui.color_convert_float4_to_u32((*colour, alpha)))
+    packed = staticmethod(packed)
 
     # --- keys of the popup that is drawn ------------------------------------------------------
 
@@ -255,6 +257,20 @@ class Widgets:
         is_topmost = context.open_popup_stack.size() == context.begin_popup_stack.size()
         held = context.active_id or context.active_id_previous_frame  # a field has taken it
         return pressed and is_topmost and not context.nav_cursor_visible and not held
+
+    def verbs(self, verb: str, tip: str, cancel_tip: str, *, cancel: str = "") -> tuple[bool, bool]:
+        """Draw "Cancel" and the verb at the right; return whether each was pressed, verb first.
+
+        Enter is the verb, which has the keyboard at first, and Esc is "Cancel".
+        """
+        width = 104.0 * self.scale
+        imgui.dummy((0.0, 2.0 * self.scale))
+        imgui.set_cursor_pos_x(imgui.get_window_width() - 2 * width - self.gap - self.margin)
+        cancelled = self.button("Cancel", cancel_tip, name=cancel, width=width)
+        imgui.same_line(0.0, self.gap)
+        pressed = self.button(verb, tip, width=width, primary=True)
+        imgui.set_item_default_focus()
+        return pressed or self.entered(), cancelled or self.escaped()
 
     # --- controls ---------------------------------------------------------------------------
 

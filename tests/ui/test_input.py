@@ -396,12 +396,13 @@ def test_nothing_is_drawn_while_nothing_changes() -> None:
     assert not schedule.idle
 
 
-def test_input_is_drawn_at_once_and_once_more_for_the_tooltip() -> None:
+def test_input_is_drawn_at_once_and_once_more_when_a_tooltip_is_due() -> None:
     schedule = Schedule()
     drawn(schedule, 0.0)
-    schedule.note_input(1.0)
+    schedule.note_input()
     assert schedule.sleep_s(1.0) == 0.0
     assert drawn(schedule, 1.0) == 5
+    schedule.wake_at(1.5)
     assert schedule.sleep_s(1.0) == pytest.approx(0.5)
     assert drawn(schedule, 1.6) == 1
     assert schedule.sleep_s(1.6) == 10.0
@@ -426,7 +427,7 @@ def test_input_does_not_wait_for_a_slow_frame() -> None:
     schedule = Schedule()
     drawn(schedule, 1.0, cost=0.5)
     schedule.note_result()
-    schedule.note_input(1.0)
+    schedule.note_input()
     assert schedule.due(1.0)
 
 

@@ -77,13 +77,15 @@ def light_of(pixels: Pixels) -> Light:
     unit = np.arange(steps + 1) / steps
     if pixels.colour == "lightness":
         return Light((_snapped(1 - _light_of_lightness(unit)),))
-    note = ""
-    if pixels.profile:
-        found, note = _by_profile(pixels, unit)
-        if found is not None:
-            return found
     light = unit**pixels.gamma if pixels.gamma else srgb_to_light(unit)
-    return Light(_weighted(light, pixels.colour), note=note)
+    if not pixels.profile:
+        return Light(_weighted(light, pixels.colour))
+    found, note = _by_profile(pixels, unit)
+    if found is None:
+        return Light(_weighted(light, pixels.colour), note=note)
+    if _is_as_without(found, _weighted(light, pixels.colour)):
+        return found
+    return replace(found, note=f"{BY_PROFILE} {_name(pixels.profile)}".rstrip())
 
 
 def light_to_srgb(light: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -140,7 +142,14 @@ def _by_profile(pixels: Pixels, unit: NDArray[np.float64]) -> tuple[Light | None
             found = Light((), profile, paper)
     except (ValueError, RuntimeError) as error:  # lcms' own error is a RuntimeError
         return None, f"its colour profile cannot be used ({error}); taken as sRGB"
-    return replace(found, note=f"{BY_PROFILE} {_name(profile)}".rstrip()), ""
+    return found, ""
+
+
+def _is_as_without(found: Light, plain: tuple[NDArray[np.float32], ...]) -> bool:
+    """Whether a profile changes nothing that can be seen: most are sRGB's own."""
+    return len(found.tables) == len(plain) and all(
+        np.abs(a - b).max() < _SAME for a, b in zip(found.tables, plain, strict=True)
+    )
 
 
 def _name(profile: bytes) -> str:

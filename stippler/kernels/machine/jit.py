@@ -142,12 +142,16 @@ def _dispatcher_of(function: Callable[..., Any], options: dict[str, Any], cached
         import numba
         import numba.core.config
         import numba.np.arraymath
-    made = numba.njit(**options)(function)
+    config: Any = numba.core.config
+    is_off, config.DISABLE_JIT = config.DISABLE_JIT, 0  # kernels are nothing without it
+    try:
+        made = numba.njit(**options)(function)
+    finally:
+        config.DISABLE_JIT = is_off
     if not cached:
         return made
     from stippler.kernels.machine.numba_cache import keep_on_disk
 
-    config: Any = numba.core.config
     before = config.CACHE_DIR
     config.CACHE_DIR = str(module_folder(function.__code__.co_filename))
     try:

@@ -7,13 +7,14 @@ multiply matrices. Ours do not. A program that is nothing but Stippler asks for 
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
+from contextlib import contextmanager, nullcontext
+
+from stippler.hidden_import import hidden
 
 _PROBE = "scipy.linalg.cython_blas"
-_modules: dict[str, Any] = sys.modules
 _wanted = False
 
 
@@ -23,14 +24,20 @@ def skip_blas() -> None:
     _wanted = True
 
 
+def drop_useless_variables() -> None:
+    """Take away a number of threads with which numba could not be imported at all.
+
+    Our kernels never start its threads.
+    """
+    asked = os.environ.get("NUMBA_NUM_THREADS", "").strip()
+    if asked.lstrip("+-").isdigit() and int(asked) < 1:
+        del os.environ["NUMBA_NUM_THREADS"]
+
+
 @contextmanager
 def importing_numba() -> Iterator[None]:
     """Hide the BLAS while numba looks for it, if that was asked for."""
-    if not _wanted or _PROBE in _modules:
+    if "numba" not in sys.modules:
+        drop_useless_variables()
+    with hidden(_PROBE) if _wanted else nullcontext():
         yield
-        return
-    _modules[_PROBE] = None  # an import of it fails at once
-    try:
-        yield
-    finally:
-        del _modules[_PROBE]

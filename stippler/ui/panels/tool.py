@@ -9,7 +9,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from stippler.brushes.brush import LARGEST_MM, SMALLEST_MM, Brush
+from stippler.brushes.brush import Brush
 from stippler.brushes.kinds import Parameter, Value
 from stippler.brushes.tip import TIP_SHAPES, Tip
 from stippler.editor.commands import Commands
@@ -18,6 +18,7 @@ from stippler.editor.tools.brush_tool import BrushTool
 from stippler.editor.tools.tool import Tool
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.errors import ParameterError
+from stippler.ui.panels.brush_radius import draw_radius
 from stippler.ui.panels.tip_editor import draw_tip_editor
 from stippler.ui.widgets import Widgets
 
@@ -26,8 +27,13 @@ _PRESSURES = ("none", "speed", "key")
 _PRESSURE_LABELS = ("Always full", "Slower is stronger", "Alt makes it light")
 
 
-def draw_tool(widgets: Widgets, toolbox: Toolbox, commands: Commands, n_selected: int) -> None:
-    """Draw the panel: what the tool is called and does, its values, and its commands."""
+def draw_tool(
+    widgets: Widgets, toolbox: Toolbox, commands: Commands, n_selected: int, px_per_mm: float
+) -> None:
+    """Draw the panel: what the tool is called and does, its values, and its commands.
+
+    `px_per_mm` is of the screen as it is zoomed: a tip's size can be typed in its pixels.
+    """
     tool = toolbox.tool
     if tool is None:
         widgets.heading("No tool")
@@ -36,7 +42,7 @@ def draw_tool(widgets: Widgets, toolbox: Toolbox, commands: Commands, n_selected
     widgets.heading(tool.label)
     widgets.caption(tool.tip)
     if isinstance(tool, BrushTool):
-        _draw_brush(widgets, toolbox, tool)
+        _draw_brush(widgets, toolbox, tool, px_per_mm)
     else:
         for name, value in _draw_parameters(widgets, tool).items():
             tool.set(name, value)
@@ -59,11 +65,15 @@ def _draw_parameters(widgets: Widgets, tool: Tool) -> dict[str, Value]:
     return changed
 
 
-def _draw_brush(widgets: Widgets, toolbox: Toolbox, tool: BrushTool) -> None:
+def _draw_brush(widgets: Widgets, toolbox: Toolbox, tool: BrushTool, px_per_mm: float) -> None:
     _draw_presets(widgets, toolbox.shelf, tool)
     brush = tool.brush
     changes: dict[str, Any] = {}
-    _draw_radius(widgets, brush, changes)
+    radius_mm = draw_radius(
+        widgets, brush.radius_mm, px_per_mm, label="Radius", name="Brush radius", width=-1.0
+    )
+    if radius_mm != brush.radius_mm:
+        changes["radius_mm"] = radius_mm
     if values := _draw_parameters(widgets, tool):
         changes["values"] = {**brush.values, **values}
     if tool.kind.has_tip:
@@ -114,18 +124,6 @@ def _draw_presets(widgets: Widgets, shelf: BrushShelf, tool: BrushTool) -> None:
     ):
         shelf.delete(kind)
     widgets.rule()
-
-
-def _draw_radius(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> None:
-    widgets.label("Radius")
-    flags = imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp
-    _, radius = imgui.slider_float(
-        "##Brush radius", brush.radius_mm, SMALLEST_MM, LARGEST_MM / 5, "%.2f mm", flags
-    )
-    widgets.note("Brush radius")
-    widgets.tip("Of the tip, in mm on the page: [ and ], Shift and drag, Ctrl or Alt and wheel.")
-    if radius != brush.radius_mm and SMALLEST_MM <= radius <= LARGEST_MM:
-        changes["radius_mm"] = radius
 
 
 def _draw_parameter(widgets: Widgets, value: Any, about: Parameter) -> Any:

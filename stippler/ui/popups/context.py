@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from imgui_bundle import imgui
 
-from stippler.brushes.brush import LARGEST_MM, SMALLEST_MM
 from stippler.editor.commands import Commands
 from stippler.editor.tools.toolbox import Toolbox
+from stippler.ui.panels.brush_radius import draw_radius
 from stippler.ui.panels.strip import draw_tool
 from stippler.ui.widgets import Widgets
 
@@ -18,8 +20,8 @@ _SELECTION = ("selection.copy", "selection.paste", "selection.delete", "selectio
 class ContextPalette:
     """Opens where the right button is pressed on the canvas."""
 
-    def __init__(self, toolbox: Toolbox) -> None:
-        self._toolbox = toolbox
+    def __init__(self, toolbox: Toolbox, px_per_mm: Callable[[], float]) -> None:
+        self._toolbox, self._px_per_mm = toolbox, px_per_mm
         self._wanted = False
         self.is_open = False
 
@@ -66,7 +68,7 @@ class ContextPalette:
         """Draw the tools in rows; return whether one was chosen."""
         chosen, used = False, self._toolbox.name
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (3.0 * widgets.scale,) * 2)
-        for k, tool in enumerate(self._toolbox.tools):
+        for k, tool in enumerate(self._toolbox.cards):
             if k % _COLUMNS:
                 imgui.same_line()
             command = commands[f"tool.{tool.name}"]
@@ -82,12 +84,10 @@ class ContextPalette:
         brush = self._toolbox.brush
         if brush is None or not brush.about.has_tip:
             return
-        imgui.set_next_item_width((4 * 34.0 + 3 * 3.0) * widgets.scale)
-        flags = imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp
-        changed, radius = imgui.slider_float(
-            "##context radius", brush.radius_mm, SMALLEST_MM, LARGEST_MM / 5, "%.2f mm", flags
-        )
-        widgets.note("context radius")
-        widgets.tip("Radius of the tip on the page.")
-        if changed:
-            self._toolbox.resize(radius / brush.radius_mm)
+        width = (_COLUMNS * 34.0 + (_COLUMNS - 1) * 3.0) * widgets.scale
+        radius_mm = draw_radius(
+            widgets, brush.radius_mm, self._px_per_mm(), label="", name="context radius",
+            width=width,
+        )  # fmt: skip
+        if radius_mm != brush.radius_mm:
+            self._toolbox.resize(radius_mm / brush.radius_mm)

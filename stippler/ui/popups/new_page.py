@@ -53,19 +53,13 @@ class NewPage:
         self.height_mm = _length(widgets, "Page height", self.height_mm)
 
     def _draw_verbs(self, widgets: Widgets) -> None:
-        gap = 8.0 * widgets.scale
-        width = (imgui.get_content_region_avail().x - gap) / 2
-        begun = widgets.button(
-            "Begin", "The drawing that is open is closed.", width=width, primary=True
+        begun, cancelled = widgets.verbs(
+            "Begin", "The drawing that is open is closed.", "Keep the drawing that is open."
         )
-        if begun or widgets.entered():
+        if begun or cancelled:
             imgui.close_current_popup()
+        if begun:
             self._begin(Page(self.width_mm, self.height_mm))
-        imgui.same_line(0.0, gap)
-        if widgets.button("Cancel", "Keep the drawing that is open.", width=width) or (
-            widgets.escaped()
-        ):
-            imgui.close_current_popup()
 
 
 def _length(widgets: Widgets, label: str, value: float) -> float:

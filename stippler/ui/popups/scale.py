@@ -55,13 +55,10 @@ class ScaleDrawing:
             widgets.caption(f"{page.width_mm * f:.4g} × {page.height_mm * f:.4g} mm on paper")
 
     def _draw_verbs(self, widgets: Widgets) -> None:
-        width = (imgui.get_content_region_avail().x - widgets.gap) / 2
-        go = widgets.button("Scale", "One step to undo.", width=width, primary=True)
-        if go or widgets.entered():
+        go, cancelled = widgets.verbs(
+            "Scale", "One step to undo.", "Leave it as it is.", cancel="Cancel scaling"
+        )
+        if go or cancelled:
             imgui.close_current_popup()
+        if go:
             scale(self._session, self.percent, self.n_dots or None, self.least_mm)
-        imgui.same_line(0.0, widgets.gap)
-        if widgets.button("Cancel", "Leave it as it is.", name="Cancel scaling", width=width) or (
-            widgets.escaped()
-        ):
-            imgui.close_current_popup()

@@ -124,6 +124,7 @@ class Guard:
         exported = widgets.button(
             "Save", "Saves the drawing, then goes on.", width=width, primary=True
         )
+        imgui.set_item_default_focus()  # where the keyboard is in use, Enter loses nothing
         return discarded, cancelled or widgets.escaped(), exported or widgets.entered()
 
     def _draw_wait(self, widgets: Widgets) -> None:

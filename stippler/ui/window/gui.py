@@ -29,6 +29,10 @@ _EDITS = frozenset(
 """Keys that, with Ctrl, edit the text of a field."""
 
 
+_TOOLTIP_LATE_S = 0.01  # so that the frame that is to show it is not too early
+_TOOLTIP_SEEN_S = 0.12  # after that it is there
+
+
 def _context() -> imgui.internal.Context:
     """Return ImGui's own state, which there is for as long as there is a `Gui`."""
     context = imgui.get_current_context()
@@ -122,6 +126,22 @@ class Gui:
     def wants_pointer(self) -> bool:
         """Whether the pointer is over a panel, or drags something of one."""
         return bool(imgui.get_io().want_capture_mouse)
+
+    @property
+    def tooltip_in_s(self) -> float:
+        """How long the pointer has yet to rest for a tooltip; 0 where none is to come."""
+        context, style = _context(), imgui.get_style()
+        if not context.hover_item_delay_id:
+            return 0.0
+        left = max(
+            style.hover_delay_normal - context.hover_item_delay_timer,
+            style.hover_stationary_delay - context.mouse_stationary_timer,
+        )
+        if left > 0.0:
+            return float(left) + _TOOLTIP_LATE_S
+        # ImGui measures it, unseen, for a frame or two before it shows it
+        is_new = left > -max(_TOOLTIP_SEEN_S, imgui.get_io().delta_time)
+        return _TOOLTIP_SEEN_S / 4 if is_new else 0.0
 
     @property
     def wants_keys(self) -> bool:

@@ -126,9 +126,21 @@ def test_srgbs_own_profile_changes_nothing(tmp_path):
     for profile in (SRGB, imagecodecs.cms_profile("srgb")):
         Image.fromarray(colours()).save(tmp_path / "with.png", icc_profile=profile)
         Image.fromarray(colours()).save(tmp_path / "without.png")
+        notes = []
         np.testing.assert_array_equal(
-            read_darkness(tmp_path / "with.png"), read_darkness(tmp_path / "without.png")
+            read_darkness(tmp_path / "with.png", notes=notes),
+            read_darkness(tmp_path / "without.png"),
         )
+        assert notes == []
+
+
+@pytest.mark.parametrize("name", ["adobe", "linear"])
+def test_a_profile_that_changes_something_is_told(tmp_path, name):
+    Image.fromarray(colours()).save(tmp_path / "with.png", icc_profile=rgb_profile(name))
+    notes = []
+    read_darkness(tmp_path / "with.png", notes=notes)
+    assert len(notes) == 1
+    assert notes[0].startswith("read by its colour profile")
 
 
 def test_a_grey_picture_with_a_profile_of_rgb(tmp_path):
