@@ -185,14 +185,16 @@ class Widgets:
         imgui.same_line(self.indent)
         imgui.set_next_item_width(-1.0)
 
-    def tip(self, text: str) -> None:
+    def tip(self, text: str, at_once: str = "") -> None:
         """Explain the last control while the pointer rests on it, and does not hold it.
 
         Beside the control's window, so that it covers no neighbour; where there is no room, below
-        the control or above it.
+        the control or above it. `at_once` is told before the pointer rests: the name of a sign.
         """
         if imgui.is_item_active() or not imgui.is_item_hovered(_EXPLAINED):
-            return
+            if not (at_once and imgui.is_item_hovered() and not imgui.is_item_active()):
+                return
+            text = at_once
         if self.why_off:
             text = f"{self.why_off}\n{text}"
         pad = (10.0 * self.scale, 7.0 * self.scale)
