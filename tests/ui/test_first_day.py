@@ -180,7 +180,7 @@ def test_tooltips_come_at_rest_and_cover_no_neighbour(page) -> None:
     host.click("Spray dots")
     editor.show_panel(TOOL)
     host.settle()
-    strip = {editor.commands[f"tool.{tool.name}"].label for tool in editor.painting.toolbox.tools}
+    strip = {editor.commands[f"tool.{tool.name}"].label for tool in editor.painting.toolbox.cards}
     panel = {"Name", "Copy brush", "Reset brush", "Brush radius", "Hardness", "Pressure", "Tip"}
     for name, neighbours in (
         ("Brush radius", panel),

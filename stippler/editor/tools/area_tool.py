@@ -68,11 +68,6 @@ SMOOTHING = Parameter(
 class AreaTool(Tool):
     """Draws an outline, and makes an area of it or changes those that are chosen."""
 
-    name, label, key = "area", "Area", "o"
-    tip = (
-        "Draws the outline of an area. What it takes from, and whether it changes the chosen areas "
-        "instead, is set below. Backspace takes a corner back."
-    )
     commands = (
         "area.unite", "area.remove", "area.smooth", "area.simplify", "area.lock", "area.hide",
     )  # fmt: skip

@@ -33,11 +33,6 @@ _WHOLE = 1e-3  # share of an area that may be missing where a place is all of it
 class BucketTool(Tool):
     """Makes an area of the place under the pointer that borders and lines enclose."""
 
-    name, label, key = "bucket", "Fill place", "Shift+B"
-    tip = (
-        "Click into a place that borders and drawn lines enclose: it becomes an area. The outline "
-        "is seen before."
-    )
     commands = ("area.unite", "area.remove")
     shows_areas = True
 

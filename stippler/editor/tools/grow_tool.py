@@ -44,11 +44,6 @@ class Scribble:
 class GrowTool(Tool):
     """Scribble within a thing of the picture; its outline is found."""
 
-    name, label, key = "grow", "Grow area", "Shift+G"
-    tip = (
-        "Scribble within a thing of the picture, and with Alt beside it: the outline follows the "
-        "tones. Enter makes an area, Backspace takes a scribble back, Esc all."
-    )
     commands = ("area.grown", "area.unite", "area.remove")
     shows_areas = True
 

@@ -23,11 +23,6 @@ _BEYOND_PX = 3.0  # ends that snap to a border go on as far as this, so that the
 class KnifeTool(Tool):
     """Draws a line from border to border; what it parts are areas of their own then."""
 
-    name, label, key = "knife", "Knife", "Shift+K"
-    tip = (
-        "Parts areas along a line: the chosen ones, or all that it crosses. The largest part keeps "
-        "name and style; the others are new areas of the same style."
-    )
     commands = ("area.unite", "area.remove")
     shows_areas = True
     closed = False

@@ -33,13 +33,6 @@ PEN, FREEHAND, MOVE = "pen", "freehand", "move"
 class LineTool(Tool):
     """Draws lines, and moves them."""
 
-    name, label, key = "line", "Line", "/"
-    tip = (
-        "Pen: click for corners, drag for curves; Enter or a double click ends, a click on the "
-        "start closes, Backspace takes a node back. Freehand: draw. Move: drag a line; what "
-        "adheres to it goes along."
-    )
-
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""

@@ -48,12 +48,6 @@ def box_of(document: Document, area: int) -> bending.Box:
 class PatternTool(Tool):
     """Bends the pattern of the chosen area, or of the page."""
 
-    name, label = "pattern", "Pattern"
-    tip = (
-        "Lays polygons over the chosen area, or the page, which its dots are drawn in. Move: drag, "
-        "corners scale, sides shear, the handle above turns (Shift by steps). Perspective: "
-        "corners. Cage: points. Pins: click to set one, drag it; Alt and a click takes it away."
-    )
     shows_areas = True
 
     @property

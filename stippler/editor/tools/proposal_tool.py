@@ -36,12 +36,6 @@ _KEPT = 50
 class ProposalTool(Tool):
     """Shows regions of the picture as outlines of areas to be."""
 
-    name, label, key = "proposals", "Propose areas", "Shift+O"
-    tip = (
-        "Outlines by the picture's tones, a help: a stroke across regions makes them one, a click "
-        "parts a region in two, a stroke with Alt parts off what it covers. Enter makes areas of "
-        "all, Backspace takes a change back."
-    )
     commands = ("area.proposed", "area.unite", "area.remove")
     shows_areas = True
 

@@ -36,8 +36,6 @@ _DOUBLE_S = 0.35
 class SelectTool(Tool):
     """Chooses dots, and moves the chosen ones."""
 
-    name, label, key = "select", "Select", "m"
-    tip = "Selects dots; Shift adds, Alt takes away. Drag what is selected, or its handles."
     commands = (
         "selection.invert", "selection.grow", "selection.copy", "selection.paste",
         "selection.delete", "selection.duplicate", "selection.fix", "selection.free",

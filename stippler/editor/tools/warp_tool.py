@@ -93,12 +93,6 @@ def target_of(what: str, document: Document, sight: Desk | Sight) -> Target | No
 class WarpTool(Tool):
     """Bends what is chosen."""
 
-    name, label = "warp", "Warp"
-    tip = (
-        "Bends chosen dots and lines, or chosen areas with their dots, lines and borders, or all, "
-        "by one cage. Dots' sizes follow, so that tone is kept; where spacing has suffered it is "
-        "relaxed when you let go."
-    )
     shows_areas = True
 
     @property

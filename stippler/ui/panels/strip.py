@@ -67,7 +67,7 @@ def draw_tools(
     tip = "The pointer only looks around."
     if draw_tool(widgets, commands["tool.none"], "", tip, used=used == "", side=shape.side):
         commands["tool.none"].run()
-    for k, tool in enumerate(toolbox.tools, 1):
+    for k, tool in enumerate(toolbox.cards, 1):
         if k % shape.columns:
             imgui.same_line()
         command = commands[f"tool.{tool.name}"]
