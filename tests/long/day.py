@@ -292,6 +292,7 @@ def main() -> None:
     options.add_argument("--hand", choices=("mouse", "keyboard"), default="mouse")
     options.add_argument("--short", action="store_true")
     chosen = options.parse_args()
+    subprocess.run([sys.executable, "-m", "stippler.warm"], check=True, stdout=subprocess.DEVNULL)
     day = Day(chosen.out.resolve(), chosen.hand)
     try:
         begin(day)
