@@ -185,14 +185,16 @@ class Widgets:
         imgui.same_line(self.indent)
         imgui.set_next_item_width(-1.0)
 
-    def tip(self, text: str) -> None:
+    def tip(self, text: str, at_once: str = "") -> None:
         """Explain the last control while the pointer rests on it, and does not hold it.
 
         Beside the control's window, so that it covers no neighbour; where there is no room, below
-        the control or above it.
+        the control or above it. `at_once` is told before the pointer rests: the name of a sign.
         """
-        if not imgui.is_item_hovered(_EXPLAINED) or imgui.is_item_active():
+        is_told = imgui.is_item_hovered(_EXPLAINED)
+        if not (is_told or (at_once and imgui.is_item_hovered())) or imgui.is_item_active():
             return
+        text = text if is_told else at_once
         if self.why_off:
             text = f"{self.why_off}\n{text}"
         pad = (10.0 * self.scale, 7.0 * self.scale)

@@ -89,6 +89,8 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.stop", "Stop", session.stop, (Key("p", SHIFT),), can=is_busy)
     yield Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),),
                   can=lambda: session.paintable and session.n_dots > 0)  # fmt: skip
+    yield Command("work.fill", "Fill the page", session.fill, can=lambda: session.paintable,
+                  tip="adds dots by the values under Drawing; one step to undo.")  # fmt: skip
     yield Command("work.style", "Choose a style", lambda: parts.popups.styles.ask())
     yield Command("work.reset", "Default values", reset)
     yield Command("work.scale", "Scale the drawing", lambda: parts.popups.scale.ask(),

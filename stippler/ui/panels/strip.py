@@ -104,5 +104,5 @@ def draw_tool(
     colour = widgets.packed(theme.on_accent if used else theme.text)
     draw_icon(name, command.label, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
     widgets.note(f"{mark}{command.label}")
-    widgets.tip(f"{command.hint}\n{tip}")
+    widgets.tip(f"{command.hint}\n{tip}", at_once=command.hint)
     return pressed
