@@ -41,7 +41,7 @@ def at(x_mm, y_mm):
 
 def variants(tool):
     for parameter in tool.parameters:
-        for option in parameter.options or (True, False) * isinstance(parameter.default, bool):
+        for option in parameter.values or (True, False) * isinstance(parameter.default, bool):
             yield parameter.name, option
 
 host.drop(Path(sys.argv[1]))

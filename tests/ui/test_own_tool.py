@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from stippler.app import App
-from stippler.brushes.kinds import Parameter
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
+from stippler.drawing.parameter import by_default
 from stippler.drawing.style import Style
 from stippler.editor.events import LEFT, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.tools import toolbox as toolbox_module
@@ -24,7 +24,7 @@ class RowTool(Tool):
 
     @property
     def parameters(self):
-        return (Parameter("n_dots", "Dots", 5.0, "In the row.", 1, 50),)
+        return (by_default("n_dots", "Dots", 5.0, "In the row.", 1, 50),)
 
     def begin(self, event, desk):
         if isinstance(event, Pressed) and event.button == LEFT:

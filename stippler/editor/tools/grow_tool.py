@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter
 from stippler.editor.events import LEFT, Event, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.tools.area_tool import DOES, OTHERS, OTHERS_THERE, make_area

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.tools.area_tool import SMOOTHING
 from stippler.editor.tools.outline_states import Cornering, Lassoing
@@ -30,7 +30,7 @@ class KnifeTool(Tool):
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
-        shape = Parameter(
+        shape = by_default(
             "shape",
             "Draw",
             "freehand",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import (
     LEFT,
     Event,
@@ -46,7 +46,7 @@ class SelectTool(Tool):
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter(
+            by_default(
                 "how",
                 "Outline",
                 "rectangle",

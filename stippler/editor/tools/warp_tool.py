@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.line_edits import lines_of, meet, set_line
 from stippler.editor.messages import WARNING
@@ -99,14 +99,14 @@ class WarpTool(Tool):
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter("what", "What", CHOSEN, "What is bent together.",
+            by_default("what", "What", CHOSEN, "What is bent together.",
                       options=(CHOSEN, AREAS, ALL)),
-            Parameter("how", "By", bending.CAGE, "What is taken hold of.",
+            by_default("how", "By", bending.CAGE, "What is taken hold of.",
                       options=(bending.CAGE, bending.MOVE, bending.PERSPECTIVE)),
-            Parameter("points", "Cage points", 4.0, "Each way.", 4, 12,
+            by_default("points", "Cage points", 4.0, "Each way.", 4, 12,
                       only=("how", (bending.CAGE,))),
-            Parameter("sizes", "Keep the tone", True, "Dots grow where they are drawn apart."),
-            Parameter("relaxes", "Relax after", True, "Where spacing has suffered."),
+            by_default("sizes", "Keep the tone", True, "Dots grow where they are drawn apart."),
+            by_default("relaxes", "Relax after", True, "Where spacing has suffered."),
         )  # fmt: skip
 
     def begin(self, event: Event, desk: Desk) -> ToolState | None:
