@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 
 from stippler.editor.events import NO_MODS, KeyDown, Mods
 
@@ -40,17 +41,7 @@ class Key:
     mods: Mods = NO_MODS
 
     def __str__(self) -> str:
-        held = [
-            name
-            for name, down in (
-                ("Ctrl", self.mods.ctrl),
-                ("Shift", self.mods.shift),
-                ("Alt", self.mods.alt),
-            )
-            if down
-        ]
-        shown = _SHOWN if held else _SHOWN | _SMALL
-        return "+".join([*held, shown.get(self.key, self.key.capitalize())])
+        return _written(self)
 
     @classmethod
     def read(cls, text: str) -> Key:
@@ -67,6 +58,15 @@ class Key:
             raise ValueError(f"{text!r} is no key")
         mods = Mods("Ctrl" in held, "Shift" in held, "Alt" in held)
         return cls(_NAMES.get(name.lower(), name.lower()), mods)
+
+
+@cache
+def _written(key: Key) -> str:
+    mods = key.mods
+    names = (("Ctrl", mods.ctrl), ("Shift", mods.shift), ("Alt", mods.alt))
+    held = [name for name, is_down in names if is_down]
+    shown = _SHOWN if held else _SHOWN | _SMALL
+    return "+".join([*held, shown.get(key.key, key.key.capitalize())])
 
 
 @dataclass(frozen=True, slots=True)

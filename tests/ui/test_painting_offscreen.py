@@ -196,9 +196,9 @@ def test_the_brush_panel_changes_the_brush_and_brushes_are_kept(
     desk, settings_folder: Path
 ) -> None:
     toolbox = desk.app.editor.painting.toolbox
-    for tool in toolbox.tools:
-        desk.host.click(tool.label)
-        assert toolbox.tool is tool
+    for card in toolbox.cards:
+        desk.host.click(card.label)
+        assert toolbox.tool is toolbox.made(card.name)
         assert desk.host.shown("Name") == (toolbox.brush is not None)
     desk.host.click("Jitter")
     desk.host.click("Copy brush")

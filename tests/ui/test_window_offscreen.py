@@ -12,7 +12,7 @@ from PIL import Image
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.jobs.work import Source, Work
-from stippler.ui import editor_window as editor_module
+from stippler.ui.panels import contents
 from stippler.ui.panels.layout import VIEW
 from stippler.ui.theme import DARK, LIGHT
 
@@ -264,7 +264,7 @@ def test_a_faulty_panel_is_told_and_the_editor_lives_on(
         raise ZeroDivisionError("a test's own")
 
     with monkeypatch.context() as patch:
-        patch.setattr(editor_module, "draw_dots", faulty)
+        patch.setattr(contents, "draw_dots", faulty)
         for _ in range(3):
             desk.host.move(*MIDDLE_OF_CANVAS)
         desk.host.settle()

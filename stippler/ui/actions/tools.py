@@ -90,7 +90,7 @@ def tool_commands(parts: Parts) -> Iterator[Command]:
 
     yield Command("tool.none", "No tool", lambda: toolbox.choose(""), (Key("v"),),
                   is_on=lambda: toolbox.tool is None)  # fmt: skip
-    for tool in toolbox.tools:
+    for tool in toolbox.cards:
         keys = (Key.read(tool.key),) if tool.key else ()
         yield Command(f"tool.{tool.name}", tool.label, chooser(tool.name), keys,
                       is_on=used(tool.name))  # fmt: skip
