@@ -52,6 +52,16 @@ _JITTERS = (
     Choice("spacing", "Spacing", "As far everywhere, by the mean spacing."),
     Choice("cell", "Cell", "By each dot's own cell: dots in the dark move less."),
 )
+AUTOMATIC, WALL, THROUGH, BLEED = "automatic", "wall", "through", "bleed"
+_BORDERS = (
+    Choice(AUTOMATIC, "Automatic", "Dots run off the page's edge; other borders are walls."),
+    Choice(WALL, "Wall", "Dots line up along the border, at the page's edge too."),
+    Choice(
+        THROUGH, "Through",
+        "Neighbours of this style that are processed together are drawn as one, without a seam.",
+    ),
+    Choice(BLEED, "Bleed", "Dots run off all of the border, as off the edge of a page."),
+)  # fmt: skip
 _DIRECTIONS = (
     Choice("pen", "Pen's", "As the pen has it."),
     Choice("set", "Set", "Along the direction given."),
@@ -176,6 +186,10 @@ class Style:
     polarity: str = parameter(
         Kind.CHOICE, "black-on-white", "Polarity", "Black dots on white paper, or white dots on a "
         "ground of ink.", choices=_POLARITIES, is_more=True,
+    )  # fmt: skip
+    border: str = parameter(
+        Kind.CHOICE, AUTOMATIC, "Border", "What its border is to the dots of an area.",
+        choices=_BORDERS, is_more=True,
     )  # fmt: skip
     name: str = ""
 
