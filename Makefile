@@ -2,8 +2,9 @@
 # make test   every test, without a screen
 # make check  lint, types, import contracts
 # make bench  every performance figure
+# make coverage   lines and branches of files/ and drawing/ that tests go through
 # make soak   an hour of random use (MINUTES=60)
-.PHONY: run test check bench soak clean
+.PHONY: run test check bench soak coverage clean
 .DEFAULT_GOAL := run
 
 VENV := .venv
@@ -45,6 +46,14 @@ soak: $(VENV)/ready-dev
 	@setup/system-libraries test
 	@$(BIN)/python -m stippler.warm
 	$(BIN)/python -m benchmarks.soak $(MINUTES)
+
+COVERING := tests/drawing tests/files tests/corpus tests/fuzz tests/regressions tests/editor \
+	tests/stippling/test_lines.py tests/stippling/test_patterns.py tests/stippling/test_scale.py
+coverage: $(VENV)/ready-dev
+	@$(PIP) --group coverage
+	@setup/system-libraries test
+	$(BIN)/python -m coverage run -m pytest -q -p no:xdist -p tests.long.contexts $(COVERING)
+	$(BIN)/python -m coverage report
 
 $(VENV)/ready: pyproject.toml
 	@echo "Setting up $(VENV) (once) ..."

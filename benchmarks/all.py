@@ -18,6 +18,7 @@ from stippler.kernels.machine.pool import n_threads
 
 TOPICS = (
     "programs",
+    "kernels",
     "relaxation",
     "areas",
     "lines",
@@ -33,7 +34,6 @@ TOPICS = (
     "live",
     "files",
     "soak",
-    "areas",
 )
 
 

@@ -38,12 +38,18 @@ glfw.swap_buffers = swapped
 from stippler.start import main
 main()
 """
+_IMPORT = """
+import time
+began = time.process_time()
+import stippler.app
+print(time.process_time() - began)
+"""
 _EDITOR = "from stippler.start import main; main()"
 
 
 def figures(quick: bool = False) -> list[Figure]:
     """Measure the editor."""
-    found = []
+    found = [_import(3 if quick else 7)]
     if shutil.which("Xvfb"):
         with _display() as env, _picture() as picture:
             found.append(_first_frame(env, picture, 3 if quick else 7))
@@ -107,6 +113,14 @@ def _first_frame(env: dict[str, str], picture: Path, repeats: int) -> Figure:
     return Figure(
         "editor, first frame", statistics.median(times[1:]), "s", 1.5, note="Xvfb, software GL"
     )
+
+
+def _import(repeats: int) -> Figure:
+    times = [
+        float(subprocess.check_output([sys.executable, "-c", _IMPORT], text=True))
+        for _ in range(repeats + 1)
+    ]
+    return Figure("editor, import, CPU time", min(times[1:]), "s")
 
 
 def _idle(env: dict[str, str], picture: Path, seconds: float) -> Figure:

@@ -17,6 +17,7 @@ from PIL import Image
 
 from benchmarks.figures import Figure
 
+_PLAIN = ("--tone", "linear", "--spacing", "lloyd")  # what versions can be compared by
 _RUN = [sys.executable, "-m", "stippler"]
 
 
@@ -34,9 +35,17 @@ def figures(quick: bool = False) -> list[Figure]:
         results = [
             Figure("60,000 dots, 20 iterations, to SVG", render("--dots", "60000"), "s", 3.0),
             Figure("10,000 dots, 20 iterations, to SVG", render("--dots", "10000"), "s", 1.2),
+            Figure("60,000 dots, Lloyd, linear", render("--dots", "60000", *_PLAIN), "s"),
+            Figure("20,000 dots, Lloyd, linear", render("--dots", "20000", *_PLAIN), "s"),
             Figure("stippler --help", _median_s([*_RUN, "--help"], repeats), "s", 0.4),
         ]
         if not quick:
+            many = ("--dots", "1000000", "--iterations", "5")
+            seconds, gigabytes = _measure([*_RUN, "render", str(picture), "-o", str(out), *many])
+            results += [
+                Figure("1,000,000 dots, 5 iterations, to SVG", seconds, "s"),
+                Figure("1,000,000 dots, 5 iterations, peak memory", gigabytes, "GB"),
+            ]
             big = Path(folder) / "big.jpg"
             # enlarged, for a child's peak memory counts that of the process it was forked from
             Image.fromarray(_shaded(1000)).resize((10_000, 10_000)).convert("RGB").save(big)

@@ -7,7 +7,6 @@ adds. Dots are random and uniform unless a name says otherwise; seeds are fixed.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
@@ -41,7 +40,7 @@ def figures(quick: bool = False) -> list[Figure]:
     repeats = 5 if quick else 15
     found = _square(repeats) + _shapes(repeats) + _weighted(repeats) + _uneven(repeats)
     found += _sizes(quick) + _brush(repeats) + _run_from_halftone(repeats)
-    found += _beside_a_ticking_thread(quick) + _compile_time(quick)
+    found += _beside_a_ticking_thread(quick)
     return found
 
 
@@ -253,33 +252,6 @@ def _beside_a_ticking_thread(quick: bool) -> list[Figure]:
         Figure("longest gap of a 60 Hz thread beside 200k", max(gaps) * 1e3, "ms", 25, 20),
         Figure("from cancel to stop at 200k", answered * 1e3, "ms", 50),
     ]
-
-
-_LOAD = """
-import time, numpy as np
-from shapely.geometry import Point, box
-import stippler.stippling.relax as r, stippler.stippling.relax_local as l
-start = time.process_time()
-round_, xy = Point(0, 0).buffer(1), np.random.default_rng(0).uniform(-.5, .5, (3000, 2))
-field = r.DensityField(np.ones((9, 9)), 1.0, (-4, -4))
-r.Relaxation(xy, round_, density=field).run(8)
-l.LocalRelaxation(xy, round_, density=field).relax([0, 1])
-print(time.process_time() - start)
-"""
-
-
-def _compile_time(quick: bool) -> list[Figure]:
-    out = []
-    with tempfile.TemporaryDirectory() as folder:
-        for name, promised in (("cold compile", 15.0), ("load from cache", 0.3)):
-            run = subprocess.run(
-                [sys.executable, "-c", _LOAD], capture_output=True, text=True, check=True,
-                env={**os.environ, "STIPPLER_CACHE_DIR": folder},
-            )  # fmt: skip
-            out.append(
-                Figure(f"relaxation's kernels, {name}", float(run.stdout), "s of CPU", promised)
-            )
-    return out
 
 
 def scipy_step(xy: Points) -> Points:

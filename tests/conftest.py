@@ -7,10 +7,13 @@
 import os
 import tempfile
 
-from hypothesis import settings
+from hypothesis import Phase, settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None, print_blob=True)
 settings.register_profile("free", deadline=None, print_blob=True)
+settings.register_profile(
+    "mutants", derandomize=True, deadline=None, phases=(Phase.explicit, Phase.generate)
+)  # one failure is enough
 settings.register_profile("long", deadline=None, print_blob=True, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 os.environ["STIPPLER_STATE_DIR"] = tempfile.mkdtemp(prefix="stippler-state-")  # not a person's

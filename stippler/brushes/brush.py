@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Self
 
-from stippler.brushes.kinds import KINDS, Kind, Parameter, Value, kind_of
+from stippler.brushes.kinds import KINDS, Kind, Value, kind_of
 from stippler.brushes.stroke_path import SMOOTHINGS, SmoothingKind
 from stippler.brushes.tip import Tip
+from stippler.drawing.parameter import Parameter
 from stippler.errors import ParameterError
 
 SMALLEST_MM, LARGEST_MM = 0.05, 500.0

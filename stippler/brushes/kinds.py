@@ -2,44 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from stippler.drawing.parameter import Parameter, by_default
+
 Rhythm = Literal["click", "arc", "time", "drag"]
 Value = float | str | bool
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """One value of a brush; a choice where it has options, a yes or no where it is a bool.
-
-    Attributes
-    ----------
-    only : (str, tuple of str) or None
-        Counts only while another parameter has one of these values.
-    """
-
-    name: str
-    label: str
-    default: Value
-    tip: str
-    low: float = 0.0
-    high: float = 1.0
-    unit: str = ""
-    options: tuple[str, ...] = ()
-    only: tuple[str, tuple[str, ...]] | None = None
-
-    def allows(self, value: object) -> bool:
-        """Return whether it may have a value."""
-        if self.options:
-            return value in self.options
-        if isinstance(self.default, bool):
-            return isinstance(value, bool)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            return False
-        return math.isfinite(value) and self.low <= value <= self.high
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +57,9 @@ class Kind:
         return next(p for p in self.parameters if p.name == name)
 
 
-_STRENGTH = Parameter("strength", "Strength", 100.0, "Share of the effect.", 1.0, 100.0, "%")
-_RADIUS = Parameter("dot_mm", "Dot radius", 0.2, "Radius of new dots in mm.", 0.02, 2.0, "mm")
-_DOTS_PER_S = Parameter(
+_STRENGTH = by_default("strength", "Strength", 100.0, "Share of the effect.", 1.0, 100.0, "%")
+_RADIUS = by_default("dot_mm", "Dot radius", 0.2, "Radius of new dots in mm.", 0.02, 2.0, "mm")
+_DOTS_PER_S = by_default(
     "per_s", "Dots / s", 200.0, "Dots a second, however fast the brush moves.", 1, 5000
 )
 
@@ -112,7 +82,7 @@ KINDS: tuple[Kind, ...] = (
         (
             _DOTS_PER_S,
             _RADIUS,
-            Parameter(
+            by_default(
                 "apart_mm",
                 "Distance",
                 0.4,
@@ -121,7 +91,7 @@ KINDS: tuple[Kind, ...] = (
                 5,
                 "mm",
             ),
-            Parameter(
+            by_default(
                 "by_tone", "Follow the picture", False, "Fewer dots where the picture is light."
             ),
         ),
@@ -163,8 +133,8 @@ KINDS: tuple[Kind, ...] = (
         "Evens out the spacing for as long as you hold.",
         (
             _STRENGTH,
-            Parameter("per_s", "Steps / s", 30.0, "Relaxation steps a second.", 1, 60),
-            Parameter(
+            by_default("per_s", "Steps / s", 30.0, "Relaxation steps a second.", 1, 60),
+            by_default(
                 "by_tone", "Follow the picture", False, "Keeps dots denser where it is darker."
             ),
         ),
@@ -177,8 +147,8 @@ KINDS: tuple[Kind, ...] = (
         "arc",
         "Shifts dots a little, at random.",
         (
-            Parameter("amount", "Amount", 20.0, "In percent of the measure below.", 1, 200, "%"),
-            Parameter(
+            by_default("amount", "Amount", 20.0, "In percent of the measure below.", 1, 200, "%"),
+            by_default(
                 "measure",
                 "Measure",
                 "distance",
@@ -195,14 +165,14 @@ KINDS: tuple[Kind, ...] = (
         "arc",
         "Makes dots larger, smaller, or a given size.",
         (
-            Parameter(
+            by_default(
                 "how",
                 "How",
                 "enlarge",
                 "By a percentage at each stamp, towards a value, or towards the picture's tone.",
                 options=("enlarge", "reduce", "set", "tone"),
             ),
-            Parameter(
+            by_default(
                 "amount",
                 "Amount",
                 5.0,
@@ -212,7 +182,7 @@ KINDS: tuple[Kind, ...] = (
                 "%",
                 only=("how", ("enlarge", "reduce", "tone")),
             ),
-            Parameter(
+            by_default(
                 "dot_mm", "Dot radius", 0.25, "In mm.", 0.02, 2.0, "mm", only=("how", ("set",))
             ),
         ),
@@ -226,15 +196,15 @@ KINDS: tuple[Kind, ...] = (
         "arc",
         "Deforms dots, or makes them round again.",
         (
-            Parameter(
+            by_default(
                 "how",
                 "How",
                 "stretch",
                 "What to change.",
                 options=("stretch", "round", "roughen", "smooth"),
             ),
-            Parameter("amount", "Amount", 10.0, "Change at each stamp, in percent.", 1, 100, "%"),
-            Parameter(
+            by_default("amount", "Amount", 10.0, "Change at each stamp, in percent.", 1, 100, "%"),
+            by_default(
                 "along",
                 "Along",
                 "stroke",
@@ -243,7 +213,7 @@ KINDS: tuple[Kind, ...] = (
                 options=("stroke", "angle", "edge", "random"),
                 only=("how", ("stretch",)),
             ),
-            Parameter(
+            by_default(
                 "angle",
                 "Angle",
                 0.0,
@@ -269,8 +239,8 @@ KINDS: tuple[Kind, ...] = (
         "arc",
         "Draws dots into lines along the stroke.",
         (
-            Parameter("strength", "Strength", 15.0, "Share of the way, a stamp.", 1, 100, "%"),
-            Parameter("teeth_mm", "Teeth", 1.0, "Distance of the lines in mm.", 0.1, 20, "mm"),
+            by_default("strength", "Strength", 15.0, "Share of the way, a stamp.", 1, 100, "%"),
+            by_default("teeth_mm", "Teeth", 1.0, "Distance of the lines in mm.", 0.1, 20, "mm"),
         ),
     ),
 )

@@ -338,8 +338,10 @@ def _plate(pins_mm: tuple[tuple[XY, XY], ...]) -> tuple[Points, Points]:
     k = np.where(r > 0, r * np.log(np.where(r > 0, r, 1.0)), 0.0)
     p = np.column_stack([np.ones(n), pins])
     system = np.block([[k, p], [p.T, np.zeros((3, 3))]])
-    try:
-        weights = np.linalg.solve(system, np.vstack([moves, np.zeros((3, 2))]))
-    except np.linalg.LinAlgError:  # all in line
-        weights = np.linalg.lstsq(system, np.vstack([moves, np.zeros((3, 2))]), rcond=None)[0]
+    goal = np.vstack([moves, np.zeros((3, 2))])
+    size = np.abs(pins - pins.mean(axis=0)).max()
+    if np.linalg.matrix_rank(pins - pins.mean(axis=0), tol=1e-6 * size) < 2:  # all in line
+        weights = np.linalg.lstsq(system, goal, rcond=1e-12)[0]
+    else:
+        weights = np.linalg.solve(system, goal)
     return pins, np.ascontiguousarray(weights)

@@ -36,7 +36,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One value of a style.
+    """One value of a style, a brush or a tool.
 
     Attributes
     ----------
@@ -93,6 +93,14 @@ class Parameter:
     def counts(self, others: object) -> bool:
         """Return whether the value makes a difference beside the others of a style."""
         return self.only is None or getattr(others, self.only[0]) in self.only[1]
+
+    def allows(self, value: object) -> bool:
+        """Return whether it may have a value."""
+        try:
+            self.checked(value)
+        except ParameterError:
+            return False
+        return True
 
     def checked(self, value: Any) -> Any:
         """Return a value as it is kept.
@@ -204,3 +212,20 @@ def parameters_of(cls: Any) -> tuple[Parameter, ...]:
         for field in dataclasses.fields(cls)
         if "parameter" in field.metadata
     )
+
+
+def by_default(
+    name: str,
+    label: str,
+    default: Any,
+    help: str,
+    low: float = 0.0,
+    high: float = 1.0,
+    unit: str = "",
+    options: tuple[str, ...] = (),
+    only: tuple[str, tuple[Any, ...]] | None = None,
+) -> Parameter:
+    """Declare one as brushes and tools do: options make it a choice, a bool a yes or no."""
+    kind = Kind.CHOICE if options else Kind.FLAG if isinstance(default, bool) else Kind.NUMBER
+    choices = tuple(Choice(option, option.capitalize()) for option in options)
+    return Parameter(name, kind, default, label, help, low, high, unit, choices, only=only)

@@ -14,9 +14,7 @@ from stippler.editor.area_jobs import AreaJobs
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.session import Session
-from stippler.editor.tools.grow_tool import GrowTool
 from stippler.editor.tools.picture_source import PictureSource
-from stippler.editor.tools.proposal_tool import ProposalTool
 from stippler.errors import GeometryError, StipplerError
 from stippler.names import shown
 
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from stippler.drawing.planar.edits import Outcome
     from stippler.drawing.planar.path import Path
     from stippler.drawing.planar.planar_map import PlanarMap
+    from stippler.editor.tools.tool import Tool
 
 Edit = Callable[["PlanarMap"], "Outcome"]
 
@@ -46,10 +45,13 @@ class AreaActs:
     def __init__(self, session: Session, painting: Painting, jobs: AreaJobs) -> None:
         self.session, self._painting, self.jobs = session, painting, jobs
         self.tolerance_mm, self.dark_level = 0.2, 0.9
-        source = PictureSource(jobs, self.lay)
-        for tool in painting.toolbox.tools:
-            if isinstance(tool, GrowTool | ProposalTool):
-                tool.source = source
+        self._source = PictureSource(jobs, self.lay)
+        for name in ("grow", "proposals"):
+            painting.toolbox.prepare[name] = self._give_source
+
+    def _give_source(self, tool: Tool) -> None:
+        """Let a tool see the picture."""
+        tool.source = self._source  # type: ignore[attr-defined]
 
     @property
     def choice(self) -> AreaChoice:
@@ -336,6 +338,18 @@ class AreaActs:
     def give_style(self, ids: Iterable[int], style: int) -> None:
         """Let areas be drawn in a style."""
         self._set("Style of areas", {k: {"style": style} for k in ids})
+
+    def set_border(self, ids: Iterable[int], border: str) -> None:
+        """Say what borders are to the dots of areas, for all areas of their styles."""
+        document = self.document
+        if document is None:
+            return
+        drawing = document.drawing
+        document.begin("Border of areas")
+        for i in {drawing.areas[k].style for k in ids if k in drawing.areas}:
+            document.set(records.STYLE, i, replace(drawing.styles[i], border=border))
+        document.commit()
+        self.session.edit_style(border=drawing.style_of(PAGE_AREA).border)
 
     def move_to(self, k: int, place: int) -> None:
         """Give an area another place in the list, counted from its top."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 
 from stippler.editor.events import NO_MODS, KeyDown, Mods
 
@@ -27,7 +28,11 @@ GROUPS = {
 }
 """The first part of a command's name, and the menu it stands in; in the menu bar's order."""
 
-_SHOWN = {"page_up": "Page Up", "page_down": "Page Down", "escape": "Esc"}
+_SHOWN = {
+    "page_up": "Page Up", "page_down": "Page Down", "escape": "Esc", "kp_add": "Keypad Plus",
+    "kp_subtract": "Keypad Minus", "kp_multiply": "Keypad Times", "kp_divide": "Keypad Divide",
+    "kp_enter": "Keypad Enter", "kp_decimal": "Keypad Point",
+}  # fmt: skip
 _SMALL = {",": "Comma", ".": "Period"}  # hard to see where nothing stands before them
 _NAMES = {shown.lower(): name for name, shown in (_SHOWN | _SMALL).items()}
 
@@ -40,17 +45,7 @@ class Key:
     mods: Mods = NO_MODS
 
     def __str__(self) -> str:
-        held = [
-            name
-            for name, down in (
-                ("Ctrl", self.mods.ctrl),
-                ("Shift", self.mods.shift),
-                ("Alt", self.mods.alt),
-            )
-            if down
-        ]
-        shown = _SHOWN if held else _SHOWN | _SMALL
-        return "+".join([*held, shown.get(self.key, self.key.capitalize())])
+        return _written(self)
 
     @classmethod
     def read(cls, text: str) -> Key:
@@ -67,6 +62,15 @@ class Key:
             raise ValueError(f"{text!r} is no key")
         mods = Mods("Ctrl" in held, "Shift" in held, "Alt" in held)
         return cls(_NAMES.get(name.lower(), name.lower()), mods)
+
+
+@cache
+def _written(key: Key) -> str:
+    mods = key.mods
+    names = (("Ctrl", mods.ctrl), ("Shift", mods.shift), ("Alt", mods.alt))
+    held = [name for name, is_down in names if is_down]
+    shown = _SHOWN if held else _SHOWN | _SMALL
+    return "+".join([*held, shown.get(key.key, key.key.capitalize())])
 
 
 @dataclass(frozen=True, slots=True)

@@ -227,3 +227,11 @@ def state_mark(document: Document) -> object:
     if document.in_draft or document.in_run or document.in_stroke:
         return object()  # like no other
     return document.history.undone
+
+
+def bytes_text(n: int) -> str:
+    """Return a size as people say it."""
+    for unit, name, decimals in ((1e6, "MB", 1), (1e3, "kB", 0)):
+        if n >= unit:
+            return f"{n / unit:.{decimals}f} {name}"
+    return f"{n} bytes"

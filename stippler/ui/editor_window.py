@@ -39,31 +39,18 @@ from stippler.ui.actions import Parts, commands_for
 from stippler.ui.canvas.canvas import MAP_EVERY_S, Canvas
 from stippler.ui.canvas.lens import LensKey
 from stippler.ui.canvas.over_page import OverPage
-from stippler.ui.canvas.pattern_samples import PatternSamples
 from stippler.ui.canvas.peek import Peek
-from stippler.ui.canvas.pen_samples import PenSamples
 from stippler.ui.field_commands import FieldCommands
 from stippler.ui.kept_choices import KeptChoices
-from stippler.ui.panels.areas import AreasPanel
 from stippler.ui.panels.brush_radius import tool_hint
+from stippler.ui.panels.contents import Contents, Subjects
 from stippler.ui.panels.docks import Panels
-from stippler.ui.panels.dots import draw_dots
-from stippler.ui.panels.history import draw_history
-from stippler.ui.panels.layout import AREAS, DRAWING, HISTORY, SHAPE, TOOL, VIEW, Layout
-from stippler.ui.panels.lines import draw_lines
+from stippler.ui.panels.layout import AREAS, SHAPE, Layout
 from stippler.ui.panels.menu import MenuBar
 from stippler.ui.panels.notice import draw_invitation, draw_notice, draw_preparing
-from stippler.ui.panels.patterns import draw_patterns
-from stippler.ui.panels.picture import draw_picture
-from stippler.ui.panels.progress import HEIGHT as WORK_HEIGHT
-from stippler.ui.panels.progress import LOW as WORK_LOW
-from stippler.ui.panels.progress import draw_work, progress_share
-from stippler.ui.panels.reference import draw_reference, draw_tones
-from stippler.ui.panels.shape import draw_shape
+from stippler.ui.panels.progress import progress_share
 from stippler.ui.panels.status import Sight, draw_status
 from stippler.ui.panels.strip import StripShape, draw_tools
-from stippler.ui.panels.tool import draw_tool
-from stippler.ui.panels.view import draw_view
 from stippler.ui.panels.writing import WritingNotice
 from stippler.ui.popups.file_dialogs import has_native_dialogs
 from stippler.ui.popups.popups import Popups
@@ -73,8 +60,6 @@ from stippler.ui.window.gui import Gui
 from stippler.ui.window.window import Window
 
 _CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
-_LEAST_SETTINGS = 60.0  # the theme's pixels; a lower panel scrolls as a whole
-_LOW = 300.0  # likewise; in a lower panel the work is one line
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
 _ANSWER_S = 0.1  # how often a system dialog is looked at
@@ -109,16 +94,13 @@ class Editor:
         native = has_native_dialogs() if native_dialogs is None else native_dialogs
         self.gui = Gui(window, self.look, kept.layout, kept.layout_scale)
         self.canvas = Canvas(window.ctx)
-        self._samples = PenSamples(window.ctx)
         self.painting = Painting(session)
         self.shaping = Shaping(session, self.painting)
         self._area_worker: Worker[Step] = Worker(window.wake)
         self.area_jobs = AreaJobs(self._area_worker, session.messages)
         self.area_acts = AreaActs(session, self.painting, self.area_jobs)
-        self._areas_panel = AreasPanel(self.area_acts)
         self.lines = Lines(session, self.painting)
         self.patterns = Patterns(session, self.painting)
-        self._pattern_samples = PatternSamples(window.ctx)
         self.hands = Hands(self.view, self.painting)
         self.pointer = self.hands.pointer
         self._over_page = OverPage(
@@ -134,25 +116,20 @@ class Editor:
         self.popups = Popups(
             window, session, kept, self.painting.toolbox, self._px_per_mm, use_native=native
         )
-        self.panels = Panels(
-            {
-                DRAWING: self._draw_drawing,
-                TOOL: self._draw_tool,
-                AREAS: lambda: self._areas_panel.draw(self.widgets, self.commands),
-                SHAPE: lambda: draw_shape(self.widgets, self.shaping, self._samples),
-                VIEW: self._draw_view,
-                HISTORY: self._draw_history,
-            },
-            kept.closed,
+        subjects = Subjects(
+            session,
+            self.look,
+            self.view,
+            self.painting,
+            self.shaping,
+            self.lines,
+            self.patterns,
+            self.area_acts,
         )
+        self._contents = Contents(subjects, window.ctx, lambda: (self.widgets, self.commands))
+        self.panels = Panels(self._contents.draw, kept.closed)
         self._layout = Layout(self.panels.names)
         self.peek = Peek(self.look, session, self.painting)
-        self._of_tools: dict[str, Callable[[], None]] = {  # what their panel shows besides
-            "line": lambda: draw_lines(self.widgets, self.lines, self.commands),
-            "pattern": lambda: draw_patterns(
-                self.widgets, self.patterns, self.commands, self._pattern_samples
-            ),
-        }
         self.lens_key = LensKey(self.look)
         self.menu, self._writing = MenuBar(), WritingNotice()
         self.commands = self.popups.commands = commands_for(self._parts())
@@ -209,7 +186,7 @@ class Editor:
         if events:
             self._schedule.note_input()
             self._keeper.may_have_changed = True
-        if self.session.poll() | self.area_jobs.poll() | self.popups.exporting.poll():
+        if self.session.poll() | self.area_jobs.poll() | self.popups.poll():
             self._schedule.note_result()
         if 0 in self._window.size_px:
             self._take_unseen(events)
@@ -217,7 +194,7 @@ class Editor:
         if not self._schedule.due(began):
             return False
         self._frame(events, began)
-        moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.exporting.moves
+        moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.moves
         self._schedule.note_frame(began, self._clock(), moving=moving)
         self._plan_wakes()
         self.n_frames += 1
@@ -237,21 +214,21 @@ class Editor:
         self._area_worker.close()
         self.popups.close()
         self.canvas.close()
-        self._samples.close()
-        self._pattern_samples.close()
+        self._contents.close()
         self.gui.close()
 
     def renew_graphics(self) -> None:
         """Make GL's context and all that is in it anew: the drawing never lives there alone."""
         with contextlib.suppress(Exception):  # a lost context may refuse anything
             self.canvas.close()
-            self._samples.close()
+            self._contents.close()
         self.gui.leave()
         self._window.renew()
         self.gui.join()
-        self.canvas, self._samples = Canvas(self._window.ctx), PenSamples(self._window.ctx)
+        self.canvas = Canvas(self._window.ctx)
+        self._contents.renew(self._window.ctx)
         self._over_page.canvas = self.canvas
-        self.popups.recovery.renew(self._window.ctx)
+        self.popups.renew()
 
     # --- one frame --------------------------------------------------------------------------
 
@@ -319,7 +296,7 @@ class Editor:
     def _draw_ui(self, events: list[tuple[Event, bool]], dt_s: float) -> None:
         recent = self.popups.filing.recent
         self._guarded("the menu", lambda: self.menu.draw(self.widgets, self.commands, recent))
-        tools = StripShape.fitting(len(self.painting.toolbox.tools) + 1, self.gui.scale)
+        tools = StripShape.fitting(len(self.painting.toolbox.cards) + 1, self.gui.scale)
         area = self._layout.draw(self.gui.scale, tools.width)
         self._place(area)
         for event, for_panels in events:
@@ -343,7 +320,7 @@ class Editor:
         if self.pointer.state.cursor in _CURSORS and not self.gui.wants_pointer:
             imgui.set_mouse_cursor(_CURSORS[self.pointer.state.cursor])
         self._guarded("the tools", lambda: self._draw_tools(tools))
-        self.panels.draw(self._guarded, self.widgets, survey=self.popups.palette.is_asked)
+        self.panels.draw(self._guarded, self.widgets, survey=self.popups.searches)
         if not self.panels.is_in_front(SHAPE):
             self.shaping.let_go()
         if self.session.drawing is None and not self.session.busy:
@@ -356,37 +333,9 @@ class Editor:
         self._guarded("the writing", lambda: self._writing.draw(self.widgets, exports, area))
         self.popups.draw(self.widgets, self._guarded)
 
-    def _draw_drawing(self) -> None:
-        scale, height = self.gui.scale, imgui.get_content_region_avail().y
-        is_low = height < _LOW * scale
-        room = height - (WORK_LOW if is_low else WORK_HEIGHT) * scale
-        imgui.begin_child("##settings", (0.0, max(room, _LEAST_SETTINGS * scale)))
-        draw_picture(self.widgets, self.session, self.commands)
-        draw_tones(self.widgets, self.session, self.look, self.commands)
-        self.widgets.rule()
-        draw_dots(self.widgets, self.session, self.commands)
-        imgui.end_child()
-        draw_work(self.widgets, self.session, self.commands, is_low=is_low)
-
-    def _draw_tool(self) -> None:
-        n_selected = self.painting.n_selected
-        draw_tool(self.widgets, self.painting.toolbox, self.commands, n_selected, self._px_per_mm())
-        if self.painting.toolbox.name in self._of_tools:
-            self.widgets.rule()
-            self._of_tools[self.painting.toolbox.name]()
-
     def _px_per_mm(self) -> float:
         """Return how many of the pixels that sizes are told in a mm on the page takes."""
         return self.view.camera.px_per_mm
-
-    def _draw_view(self) -> None:
-        draw_view(self.widgets, self.look, self.view, self.commands)
-        if self.session.reference is not None:
-            self.widgets.rule()
-            draw_reference(self.widgets, self.session, self.look, self.commands)
-
-    def _draw_history(self) -> None:
-        draw_history(self.widgets, self.session, self.painting, self.commands)
 
     def _show_if_panel(self, name: str) -> None:
         if name in self.panels.names:

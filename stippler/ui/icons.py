@@ -6,6 +6,8 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 from imgui_bundle import imgui
 
@@ -22,11 +24,27 @@ _SCATTER = (
 _STEPS = tuple(k / 12 for k in range(13))
 
 
+class _Recorder:
+    """Stands for a draw list and keeps what is called, with places as ImGui has them."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        method = getattr(imgui.ImDrawList, name)
+
+        def note(*args: Any) -> None:
+            kept = tuple(imgui.ImVec2(*a) if isinstance(a, tuple) else a for a in args)
+            self.calls.append((method, kept))
+
+        return note
+
+
 @dataclass(frozen=True, slots=True)
 class Pen:
     """Draws in a square of the screen; coordinates run from 0 to 1, y down."""
 
-    draw: imgui.ImDrawList
+    draw: imgui.ImDrawList | _Recorder
     x: float
     y: float
     side: float
@@ -256,11 +274,21 @@ _ICONS: dict[str, Callable[[Pen], None]] = {
 }
 
 
+@lru_cache(maxsize=256)
+def _recorded(
+    name: str, x: float, y: float, side: float, colour: int
+) -> tuple[tuple[Callable[..., None], tuple[Any, ...]], ...]:
+    """Return the calls that draw an icon: as a rule it stands where it stood a frame ago."""
+    recorder = _Recorder()
+    _ICONS[name](Pen(recorder, x, y, side, colour))
+    return tuple(recorder.calls)
+
+
 def draw_icon(name: str, label: str, pen: Pen) -> None:
     """Draw the icon of a tool by its name, or its letter where it has none; "" is no tool."""
-    icon = _ICONS.get(name)
-    if icon is not None:
-        icon(pen)
+    if name in _ICONS:
+        for method, args in _recorded(name, pen.x, pen.y, pen.side, pen.colour):
+            method(pen.draw, *args)
         return
     letter = label[:1]
     size = imgui.calc_text_size(letter)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import imgui_bundle
@@ -194,3 +195,9 @@ def _palette(theme: Theme) -> list[tuple[int, Colour, float]]:
         (col.nav_cursor, theme.accent, 1.0),
         (col.drag_drop_target, theme.accent, 1.0),
     ]
+
+
+@lru_cache(maxsize=256)
+def packed(colour: Colour, alpha: float = 1.0) -> int:
+    """Return a colour as draw lists take it."""
+    return int(imgui.color_convert_float4_to_u32((*colour, alpha)))

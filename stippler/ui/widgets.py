@@ -17,7 +17,7 @@ from imgui_bundle import imgui
 from stippler.editor.number_steps import Scale
 from stippler.ui.fields import CHECK, CHOICE, Fields
 from stippler.ui.number_control import About, Numbers, draw_number
-from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme
+from stippler.ui.theme import SMALL_PX, TEXT_PX, Colour, Fonts, Theme, packed
 
 Rect = tuple[float, float, float, float]
 LABEL_WIDTH = 84.0
@@ -185,14 +185,16 @@ class Widgets:
         imgui.same_line(self.indent)
         imgui.set_next_item_width(-1.0)
 
-    def tip(self, text: str) -> None:
+    def tip(self, text: str, at_once: str = "") -> None:
         """Explain the last control while the pointer rests on it, and does not hold it.
 
         Beside the control's window, so that it covers no neighbour; where there is no room, below
-        the control or above it.
+        the control or above it. `at_once` is told before the pointer rests: the name of a sign.
         """
-        if imgui.is_item_active() or not imgui.is_item_hovered(_EXPLAINED):
+        is_told = imgui.is_item_hovered(_EXPLAINED)
+        if not (is_told or (at_once and imgui.is_item_hovered())) or imgui.is_item_active():
             return
+        text = text if is_told else at_once
         if self.why_off:
             text = f"{self.why_off}\n{text}"
         pad = (10.0 * self.scale, 7.0 * self.scale)
@@ -237,10 +239,7 @@ class Widgets:
         imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 5.0 * self.scale)
         return self.icon_button(name, icon, tip)
 
-    @staticmethod
-    def packed(colour: Colour, alpha: float = 1.0) -> int:
-        """Return a colour as draw lists take it."""
-        return int(imgui.color_convert_float4_to_u32((*colour, alpha)))
+    packed = staticmethod(packed)
 
     # --- keys of the popup that is drawn ------------------------------------------------------
 

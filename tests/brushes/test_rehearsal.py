@@ -36,20 +36,21 @@ session, painting = app.session, app.editor.painting
 def at(x_mm, y_mm):
     editor = app.editor
     x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
-    left, top = editor.pointer._origin_px
+    left, top = editor.pointer.origin_px
     return float(x + left), float(y + top)
 
 def variants(tool):
     for parameter in tool.parameters:
-        for option in parameter.options or (True, False) * isinstance(parameter.default, bool):
+        for option in parameter.values or (True, False) * isinstance(parameter.default, bool):
             yield parameter.name, option
 
 host.drop(Path(sys.argv[1]))
 host.until(lambda: session.phase == "done", "the drawing")
 at_work.append("first frames")
 host.settle()
-for tool in painting.toolbox.tools:
-    painting.toolbox.choose(tool.name)
+for card in painting.toolbox.cards:
+    painting.toolbox.choose(card.name)
+    tool = painting.toolbox.tool
     for name, option in [*variants(tool), (None, None)]:
         at_work.append(f"{tool.name} {name} {option}")
         if name:

@@ -33,7 +33,7 @@ def variants():
             continue
         yield kind.name, {}
         for p in kind.parameters:
-            for option in p.options or ((True,) if isinstance(p.default, bool) else ()):
+            for option in p.values or ((True,) if isinstance(p.default, bool) else ()):
                 yield kind.name, {p.name: option}
 
 

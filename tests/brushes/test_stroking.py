@@ -49,8 +49,8 @@ def make_editing(n=600, seed=1, hole=False):
 def choices(kind):
     drawn = {}
     for p in kind.parameters:
-        if p.options:
-            drawn[p.name] = st.sampled_from(p.options)
+        if p.values:
+            drawn[p.name] = st.sampled_from(p.values)
         elif isinstance(p.default, bool):
             drawn[p.name] = st.booleans()
         else:

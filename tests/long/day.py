@@ -122,6 +122,17 @@ class Day:
         x0, y0, x1, y1 = CANVAS
         return int((self.shot()[y0:y1, x0:x1].mean(axis=2) < 110).sum())
 
+    def drawn(self) -> int:
+        """Return how many pixels near the middle of the canvas are no white paper."""
+        x, y = (CANVAS[0] + CANVAS[2]) // 2, (CANVAS[1] + CANVAS[3]) // 2
+        return int((self.shot()[y - 100 : y + 100, x - 60 : x + 60].mean(axis=2) < 235).sum())
+
+    def marked(self) -> int:
+        """Return how many pixels of the canvas are in the colour of selected dots."""
+        x0, y0, x1, y1 = CANVAS
+        canvas = self.shot()[y0:y1, x0:x1].astype(int)
+        return int((canvas[..., 2] - canvas[..., 0] > 90).sum())
+
     def step(self, name: str, is_true: Callable[[], bool]) -> None:
         """Wait until a step has come true, keep its picture, and tell."""
         self.until(name, is_true)
@@ -183,6 +194,7 @@ def paint(day: Day, *, short: bool) -> None:
             more_by_mouse(day, middle)
     for _ in range(4 if short else 30):
         day.keys("ctrl+z")
+    day.keys("ctrl+shift+a")  # undo has brought the selection back, too
     if short:
         day.step("undo", lambda: "*" not in day.title())
     else:
@@ -200,10 +212,15 @@ def more_by_mouse(day: Day, middle: tuple[float, float]) -> None:
     day.drag((x - 120, y + 90), (x - 60, y + 100), (x, y + 90))
     day.step("spray", day.steady)
     day.keys("m")
+    day.run("outline lasso")
     day.drag((x - 60, y - 60), (x + 60, y - 50), (x + 60, y + 60), (x - 60, y + 60))
-    day.step("lasso", day.steady)
-    day.drag((x, y), (x + 40, y + 20))
-    day.step("moved", day.steady)
+    day.step("lasso", lambda: day.marked() > 500)
+    day.drag((x, y), (x + 90, y + 20))
+    day.step("moved", lambda: day.marked() > 500 and day.steady())
+    before = day.marked()
+    day.run("enlarge the selection")
+    day.run("enlarge the selection")
+    day.step("resized", lambda: day.marked() > 1.2 * before)
     day.keys("Escape", "Escape", "v")
 
 
@@ -227,13 +244,30 @@ def keep(day: Day) -> None:
     day.step("wrong file", lambda: day.process.poll() is None and day.ink() > 0.5 * before)
 
 
+def export(day: Day) -> None:
+    """The drawing as a file for print, by the dialog and the keyboard."""
+    day.keys("ctrl+e")
+    time.sleep(1.0)
+    Image.fromarray(day.shot()).save(day.out / "dialog.png")
+    day.keys("ctrl+a")
+    day.type(str(day.out / "bee.svg"))
+    day.keys("Return")
+    day.step("export", lambda: (day.out / "bee.svg").exists() and day.steady())
+
+
 def more_pages(day: Day) -> None:
-    """A new page by the keyboard, dots sprayed on it, rulers, navigator, the picture beside."""
+    """A new page by the keyboard, dots filled in or sprayed on it, rulers, navigator."""
     day.keys("ctrl+n")
     time.sleep(0.3)
     day.keys("Return")
     day.step("new page", lambda: day.ink() < 200)
-    day.run("fill the page")
+    if day.hand == "keyboard":
+        day.run("fill the page")
+    else:
+        day.keys("s")
+        x, y = (CANVAS[0] + CANVAS[2]) / 2, (CANVAS[1] + CANVAS[3]) / 2
+        day.drag((x - 40, y - 80), (x + 40, y), (x - 40, y + 80))
+    day.step("dots on the page", lambda: day.drawn() > 100 and "*" in day.title())
     day.run("rulers")
     day.run("navigator")
     day.step("rulers and navigator", day.steady)
@@ -242,15 +276,10 @@ def more_pages(day: Day) -> None:
 def leave(day: Day) -> None:
     """Close the window; what is not saved is asked about."""
     day.keys("ctrl+q")
-    time.sleep(0.6)
+    time.sleep(1.5)
     if day.process.poll() is None:
         Image.fromarray(day.shot()).save(day.out / "question.png")
-        day.keys("Tab", "space")  # through the buttons: the first lets the changes go
-        time.sleep(0.6)
-    if day.process.poll() is None:
-        day.keys("Escape")
-        day.xdotool("windowfocus", day._window())
-        day.keys("ctrl+z", "ctrl+z", "ctrl+q")
+        day.keys("Tab", "space")  # from Save, which has the keyboard, round to Discard
     day.process.wait(timeout=_PATIENCE_S)
     assert day.process.returncode == 0
     print("quit: ok")
@@ -263,12 +292,14 @@ def main() -> None:
     options.add_argument("--hand", choices=("mouse", "keyboard"), default="mouse")
     options.add_argument("--short", action="store_true")
     chosen = options.parse_args()
+    subprocess.run([sys.executable, "-m", "stippler.warm"], check=True, stdout=subprocess.DEVNULL)
     day = Day(chosen.out.resolve(), chosen.hand)
     try:
         begin(day)
         paint(day, short=chosen.short)
         keep(day)
         if not chosen.short:
+            export(day)
             more_pages(day)
         leave(day)
     finally:

@@ -118,7 +118,7 @@ def states(host: object, app: object) -> dict[str, Callable[[], None]]:
     found["01-sample"] = open_sample
     for name in editor.panels.names:
         found[f"10-panel-{name.lower()}"] = panel(name)
-    for one in editor.painting.toolbox.tools:
+    for one in editor.painting.toolbox.cards:
         found[f"20-tool-{one.name}"] = tool(one.name)
     for name in ("help.palette", "help.keys", "edit.preferences", "file.new", "file.open",
                  "file.save_as", "file.export_as"):  # fmt: skip

@@ -28,7 +28,7 @@ def page(desk):
 
 
 def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
-    view, origin = desk.app.editor.view, desk.app.editor.pointer._origin_px
+    view, origin = desk.app.editor.view, desk.app.editor.pointer.origin_px
     x, y = view.camera.page_to_screen((x_mm, y_mm), view.size_px)
     return float(x + origin[0]), float(y + origin[1])
 
@@ -180,7 +180,7 @@ def test_tooltips_come_at_rest_and_cover_no_neighbour(page) -> None:
     host.click("Spray dots")
     editor.show_panel(TOOL)
     host.settle()
-    strip = {editor.commands[f"tool.{tool.name}"].label for tool in editor.painting.toolbox.tools}
+    strip = {editor.commands[f"tool.{tool.name}"].label for tool in editor.painting.toolbox.cards}
     panel = {"Name", "Copy brush", "Reset brush", "Brush radius", "Hardness", "Pressure", "Tip"}
     for name, neighbours in (
         ("Brush radius", panel),
@@ -199,6 +199,18 @@ def test_tooltips_come_at_rest_and_cover_no_neighbour(page) -> None:
         assert rect[3] <= 700
         host.leave()
         host.enter()
+
+
+def test_a_tool_tells_its_name_as_soon_as_the_pointer_is_on_it(page) -> None:
+    from imgui_bundle import imgui
+
+    page.host.move(*page.host.place("Spray dots"))
+    for _ in range(3):
+        page.app.step(0.0)
+    window = imgui.internal.find_window_by_name("##Tooltip_00")
+    assert window is not None
+    assert window.active
+    assert window.size.y < 40  # one line; what it does comes when the pointer rests
 
 
 # --- 10: the path stays ---------------------------------------------------------------------

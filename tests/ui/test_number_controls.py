@@ -178,7 +178,7 @@ def test_no_label_is_cut_and_the_canvas_has_room(
             app.editor.show_panel(name)
             host.settle()
             assert app.editor.widgets.cut == [], name
-        for tool in app.editor.painting.toolbox.tools:
+        for tool in app.editor.painting.toolbox.cards:
             app.editor.painting.toolbox.choose(tool.name)
             app.editor.show_panel(TOOL)
             host.settle()
@@ -187,7 +187,7 @@ def test_no_label_is_cut_and_the_canvas_has_room(
         app.editor.panels.turn_hidden()  # so that labels are the strip's alone
         host.leave()
         host.settle()
-        for tool in app.editor.painting.toolbox.tools:
+        for tool in app.editor.painting.toolbox.cards:
             label = app.editor.commands[f"tool.{tool.name}"].label
             x0, _, x1, y1 = app.editor.widgets.marks[label]
             assert y1 <= size[1] - 28 * float(scale)

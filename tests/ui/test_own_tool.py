@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from stippler.app import App
-from stippler.brushes.kinds import Parameter
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Page
+from stippler.drawing.parameter import by_default
 from stippler.drawing.style import Style
 from stippler.editor.events import LEFT, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.tools import toolbox as toolbox_module
+from stippler.editor.tools.cards import Card
 from stippler.editor.tools.tool import NOTHING, RESTING, Handle, Overlay, Path, Tool
 from stippler.ui.window.scripted_host import Host
 
@@ -21,12 +22,9 @@ from stippler.ui.window.scripted_host import Host
 class RowTool(Tool):
     """Sets a row of dots from press to release."""
 
-    name, label, key = "row", "Row of dots", "n"
-    tip = "Drag a row of dots."
-
     @property
     def parameters(self):
-        return (Parameter("n_dots", "Dots", 5.0, "In the row.", 1, 50),)
+        return (by_default("n_dots", "Dots", 5.0, "In the row.", 1, 50),)
 
     def begin(self, event, desk):
         if isinstance(event, Pressed) and event.button == LEFT:
@@ -67,11 +65,14 @@ class Rowing:
         pass
 
 
+ROW = Card("row", "Row of dots", "n", "Drag a row of dots.", RowTool)
+
+
 @pytest.fixture
 def host(kernels: None, monkeypatch, tmp_path):
     monkeypatch.setenv("STIPPLER_CONFIG_DIR", str(tmp_path / "settings"))
-    every = toolbox_module.all_tools
-    monkeypatch.setattr(toolbox_module, "all_tools", lambda shelf: (*every(shelf), RowTool()))
+    every = toolbox_module.all_cards
+    monkeypatch.setattr(toolbox_module, "all_cards", lambda shelf: (*every(shelf), ROW))
     made = []
 
     def start() -> Host:

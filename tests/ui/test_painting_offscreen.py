@@ -36,7 +36,7 @@ def opened(desk, picture: Path):
 def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
     editor = desk.app.editor
     x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
-    origin = editor.pointer._origin_px
+    origin = editor.pointer.origin_px
     return float(x + origin[0]), float(y + origin[1])
 
 
@@ -196,9 +196,9 @@ def test_the_brush_panel_changes_the_brush_and_brushes_are_kept(
     desk, settings_folder: Path
 ) -> None:
     toolbox = desk.app.editor.painting.toolbox
-    for tool in toolbox.tools:
-        desk.host.click(tool.label)
-        assert toolbox.tool is tool
+    for card in toolbox.cards:
+        desk.host.click(card.label)
+        assert toolbox.tool is toolbox.made(card.name)
         assert desk.host.shown("Name") == (toolbox.brush is not None)
     desk.host.click("Jitter")
     desk.host.click("Copy brush")

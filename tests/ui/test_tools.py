@@ -343,7 +343,7 @@ class ToolMachine(RuleBasedStateMachine):
     @rule(k=st.integers(0, len(KINDS)))
     def choose(self, k):
         if not self.hands.box.is_busy:
-            self.hands.box.choose(self.hands.box.tools[k].name)
+            self.hands.box.choose(self.hands.box.cards[k].name)
 
     @rule(
         kind=st.sampled_from([Pressed, Moved, Moved, Released]),

@@ -75,7 +75,7 @@ def _split(xy: Ints, which: Ints, at: Ints) -> tuple[Ints, Ints]:
     direction = (xy[owner, 2:] - xy[owner, :2]).astype(np.float64)
     share = (away * direction).sum(axis=1)
     share[:m] = np.inf
-    order = np.lexsort((share, owner))
+    order = np.lexsort((ends[:, 0], ends[:, 1], share, owner))  # a point met twice is one
     owner, ends = owner[order], ends[order]
     first = np.r_[True, owner[1:] != owner[:-1]]
     starts = np.empty_like(ends)

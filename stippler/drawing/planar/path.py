@@ -157,8 +157,10 @@ class Path:
             if c.first < last or n < 1 or c.last >= len(at) or len(c.at) not in (0, n + 1):
                 raise GeometryError("has a curve that is none", "border", "the file is damaged")
             last = c.last
-        limit = REACH_MM / UNIT_MM
-        if len(at) < 2 or (np.abs(at) > limit).any() or not (np.diff(at, axis=0) != 0).any(1).all():
+        limit = REACH_MM / UNIT_MM  # not by size: of the least number there is none
+        if len(at) < 2 or at.min() < -limit or at.max() > limit:
+            raise GeometryError("is no path", "border", "the file is damaged")
+        if not (np.diff(at, axis=0) != 0).any(axis=1).all():
             raise GeometryError("is no path", "border", "the file is damaged")
         return cls(at, curves)
 

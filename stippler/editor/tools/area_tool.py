@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.messages import INFO
 from stippler.editor.tools.outline_states import Cornering, Lassoing
@@ -20,7 +20,7 @@ NEW, ADD, TAKE, CUT_OUT = "new area", "add", "take away", "cut out"
 OTHERS = {"gives way": "takes", "stays": "is-cut", "forbids it": "refused"}
 """What lies where a new area is drawn, as the panel says it and as `planar.edits` does."""
 
-DOES = Parameter(
+DOES = by_default(
     "does",
     "Makes",
     NEW,
@@ -28,7 +28,7 @@ DOES = Parameter(
     "part out of it that is an area of its own then.",
     options=(NEW, ADD, TAKE, CUT_OUT),
 )
-OTHERS_THERE = Parameter(
+OTHERS_THERE = by_default(
     "others",
     "Others",
     "gives way",
@@ -37,7 +37,7 @@ OTHERS_THERE = Parameter(
     options=tuple(OTHERS),
     only=("does", (NEW, ADD)),
 )
-SHAPE = Parameter(
+SHAPE = by_default(
     "shape",
     "Draw",
     "corners",
@@ -45,7 +45,7 @@ SHAPE = Parameter(
     "corner closes. Or drag a lasso.",
     options=("corners", "lasso"),
 )
-FOLLOW = Parameter(
+FOLLOW = by_default(
     "follow",
     "Along borders",
     True,
@@ -53,7 +53,7 @@ FOLLOW = Parameter(
     "borders.",
     only=("shape", ("corners",)),
 )
-SMOOTHING = Parameter(
+SMOOTHING = by_default(
     "smoothing",
     "Smoothing",
     2.0,
@@ -68,11 +68,6 @@ SMOOTHING = Parameter(
 class AreaTool(Tool):
     """Draws an outline, and makes an area of it or changes those that are chosen."""
 
-    name, label, key = "area", "Area", "o"
-    tip = (
-        "Draws the outline of an area. What it takes from, and whether it changes the chosen areas "
-        "instead, is set below. Backspace takes a corner back."
-    )
     commands = (
         "area.unite", "area.remove", "area.smooth", "area.simplify", "area.lock", "area.hide",
     )  # fmt: skip

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from stippler.brushes.brush import LARGEST_MM, SMALLEST_MM, Brush
-from stippler.brushes.kinds import Kind, Parameter, Value
+from stippler.brushes.kinds import Kind, Value
 from stippler.brushes.stroke_path import PointerSample
+from stippler.drawing.parameter import Parameter
 from stippler.editor.events import (
     LEFT,
     Event,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Moved, Pressed
 from stippler.editor.messages import INFO
 from stippler.editor.tools.area_tool import ADD, CUT_OUT, NEW, make_area
@@ -33,11 +33,6 @@ _WHOLE = 1e-3  # share of an area that may be missing where a place is all of it
 class BucketTool(Tool):
     """Makes an area of the place under the pointer that borders and lines enclose."""
 
-    name, label, key = "bucket", "Fill place", "Shift+B"
-    tip = (
-        "Click into a place that borders and drawn lines enclose: it becomes an area. The outline "
-        "is seen before."
-    )
     commands = ("area.unite", "area.remove")
     shows_areas = True
 
@@ -49,11 +44,11 @@ class BucketTool(Tool):
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter(
+            by_default(
                 "gap", "Gaps up to", 0.0, "Openings up to this width count as closed.",
                 0.0, 50.0, "mm",
             ),
-            Parameter(
+            by_default(
                 "does", "Makes", NEW, "A new area, or adds to the chosen one.", options=(NEW, ADD)
             ),
         )  # fmt: skip

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter
 from stippler.editor.events import LEFT, Event, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.tools.area_tool import DOES, OTHERS, OTHERS_THERE, make_area
@@ -44,11 +44,6 @@ class Scribble:
 class GrowTool(Tool):
     """Scribble within a thing of the picture; its outline is found."""
 
-    name, label, key = "grow", "Grow area", "Shift+G"
-    tip = (
-        "Scribble within a thing of the picture, and with Alt beside it: the outline follows the "
-        "tones. Enter makes an area, Backspace takes a scribble back, Esc all."
-    )
     commands = ("area.grown", "area.unite", "area.remove")
     shows_areas = True
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.tools.area_tool import SMOOTHING
 from stippler.editor.tools.outline_states import Cornering, Lassoing
@@ -23,11 +23,6 @@ _BEYOND_PX = 3.0  # ends that snap to a border go on as far as this, so that the
 class KnifeTool(Tool):
     """Draws a line from border to border; what it parts are areas of their own then."""
 
-    name, label, key = "knife", "Knife", "Shift+K"
-    tip = (
-        "Parts areas along a line: the chosen ones, or all that it crosses. The largest part keeps "
-        "name and style; the others are new areas of the same style."
-    )
     commands = ("area.unite", "area.remove")
     shows_areas = True
     closed = False
@@ -35,7 +30,7 @@ class KnifeTool(Tool):
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
-        shape = Parameter(
+        shape = by_default(
             "shape",
             "Draw",
             "freehand",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, KeyDown, Pressed
 from stippler.editor.line_edits import lines_of, set_line
 from stippler.editor.tools.line_choice import line_at
@@ -33,31 +33,24 @@ PEN, FREEHAND, MOVE = "pen", "freehand", "move"
 class LineTool(Tool):
     """Draws lines, and moves them."""
 
-    name, label, key = "line", "Line", "/"
-    tip = (
-        "Pen: click for corners, drag for curves; Enter or a double click ends, a click on the "
-        "start closes, Backspace takes a node back. Freehand: draw. Move: drag a line; what "
-        "adheres to it goes along."
-    )
-
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         drawing = ("how", (PEN, FREEHAND))
         return (
-            Parameter("how", "How", PEN, "Draw or move lines.", options=(PEN, FREEHAND, MOVE)),
-            Parameter("start_mm", "Width", 0.3, "Where it begins.", 0.0, 10.0, "mm", only=drawing),
-            Parameter("end_mm", "At its end", 0.3, "Another width tapers the line.", 0.0, 10.0,
+            by_default("how", "How", PEN, "Draw or move lines.", options=(PEN, FREEHAND, MOVE)),
+            by_default("start_mm", "Width", 0.3, "Where it begins.", 0.0, 10.0, "mm", only=drawing),
+            by_default("end_mm", "At its end", 0.3, "Another width tapers the line.", 0.0, 10.0,
                       "mm", only=drawing),
-            Parameter("printed", "In ink", True, "Else it is a guide that only dots see.",
+            by_default("printed", "In ink", True, "Else it is a guide that only dots see.",
                       only=drawing),
-            Parameter("meeting", "Dots", "ignore",
+            by_default("meeting", "Dots", "ignore",
                       "Ignore the line, keep a distance from its edge, or adhere: those within "
                       "reach line up on it.", options=("ignore", "distance", "adhere"),
                       only=drawing),
-            Parameter("distance_mm", "Distance", 0.3, "Of dots from its edge.", 0.0, 10.0, "mm",
+            by_default("distance_mm", "Distance", 0.3, "Of dots from its edge.", 0.0, 10.0, "mm",
                       only=("meeting", ("distance",))),
-            Parameter("reach_mm", "Reach", 1.0, "From how far dots line up.", 0.0, 10.0, "mm",
+            by_default("reach_mm", "Reach", 1.0, "From how far dots line up.", 0.0, 10.0, "mm",
                       only=("meeting", ("adhere",))),
         )  # fmt: skip
 

@@ -74,12 +74,6 @@ class NodeTool(Tool):
         One for each source.
     """
 
-    name, label, key = "nodes", "Nodes", "Shift+N"
-    tip = (
-        "Edits borders and lines: drag a node, a handle or what lies between two nodes; all "
-        "areas there follow. Shift chooses several, dragging beside chooses by a box. A double "
-        "click adds a node, Delete removes. Alt breaks a smooth node, or keeps from snapping."
-    )
     commands = (
         "nodes.smooth", "nodes.corner", "nodes.add", "nodes.remove", "nodes.none",
     )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.messages import WARNING
 from stippler.editor.tools import bending
@@ -48,20 +48,14 @@ def box_of(document: Document, area: int) -> bending.Box:
 class PatternTool(Tool):
     """Bends the pattern of the chosen area, or of the page."""
 
-    name, label = "pattern", "Pattern"
-    tip = (
-        "Lays polygons over the chosen area, or the page, which its dots are drawn in. Move: drag, "
-        "corners scale, sides shear, the handle above turns (Shift by steps). Perspective: "
-        "corners. Cage: points. Pins: click to set one, drag it; Alt and a click takes it away."
-    )
     shows_areas = True
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter("how", "By", bending.MOVE, "What is taken hold of.", options=bending.WAYS),
-            Parameter("dots", "Take dots along", True, "Dots follow while it is dragged."),
+            by_default("how", "By", bending.MOVE, "What is taken hold of.", options=bending.WAYS),
+            by_default("dots", "Take dots along", True, "Dots follow while it is dragged."),
         )
 
     def begin(self, event: Event, desk: Desk) -> ToolState | None:

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from stippler.brushes.kinds import Parameter, Value
+from stippler.brushes.kinds import Value
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, FocusLost, KeyDown, Moved, Pressed, Released
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.tools.picture_source import PictureSource, lines_of
@@ -36,12 +37,6 @@ _KEPT = 50
 class ProposalTool(Tool):
     """Shows regions of the picture as outlines of areas to be."""
 
-    name, label, key = "proposals", "Propose areas", "Shift+O"
-    tip = (
-        "Outlines by the picture's tones, a help: a stroke across regions makes them one, a click "
-        "parts a region in two, a stroke with Alt parts off what it covers. Enter makes areas of "
-        "all, Backspace takes a change back."
-    )
     commands = ("area.proposed", "area.unite", "area.remove")
     shows_areas = True
 
@@ -57,7 +52,7 @@ class ProposalTool(Tool):
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter(
+            by_default(
                 "regions", "Regions", 24.0, "About how many; changing it begins anew.", 2.0, 300.0
             ),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import (
     LEFT,
     Event,
@@ -36,8 +36,6 @@ _DOUBLE_S = 0.35
 class SelectTool(Tool):
     """Chooses dots, and moves the chosen ones."""
 
-    name, label, key = "select", "Select", "m"
-    tip = "Selects dots; Shift adds, Alt takes away. Drag what is selected, or its handles."
     commands = (
         "selection.invert", "selection.grow", "selection.copy", "selection.paste",
         "selection.delete", "selection.duplicate", "selection.fix", "selection.free",
@@ -48,7 +46,7 @@ class SelectTool(Tool):
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter(
+            by_default(
                 "how",
                 "Outline",
                 "rectangle",

@@ -11,7 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
-from stippler.brushes.kinds import Parameter, Value
+from stippler.brushes.kinds import Value
+from stippler.drawing.parameter import Parameter
 from stippler.editor.events import NO_MODS, Event, KeyDown, Mods, Moved, Pressed, Released, Scrolled
 from stippler.editor.tools.line_choice import ChosenLines
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stippler.brushes.brush import Brush
-from stippler.brushes.kinds import KINDS
 from stippler.editor.area_choice import AreaChoice
 from stippler.editor.events import (
     LEFT,
@@ -23,38 +22,23 @@ from stippler.editor.events import (
     Released,
 )
 from stippler.editor.messages import WARNING
-from stippler.editor.tools.area_tool import AreaTool
 from stippler.editor.tools.brush_shelf import BrushShelf, Say
 from stippler.editor.tools.brush_tool import BrushTool
-from stippler.editor.tools.bucket_tool import BucketTool
-from stippler.editor.tools.grow_tool import GrowTool
-from stippler.editor.tools.knife_tool import KnifeTool
+from stippler.editor.tools.cards import all_cards
 from stippler.editor.tools.line_choice import ChosenLines
-from stippler.editor.tools.line_tool import LineTool
-from stippler.editor.tools.node_tool import NodeTool
-from stippler.editor.tools.pattern_tool import PatternTool
-from stippler.editor.tools.proposal_tool import ProposalTool
-from stippler.editor.tools.select_tool import SelectTool
 from stippler.editor.tools.selection import Selection
 from stippler.editor.tools.tool import RESTING, Desk, Overlay, Point, Sight, Tool, ToolState
-from stippler.editor.tools.warp_tool import WarpTool
 from stippler.errors import StipplerError
 from stippler.settings import read_document, write_document
 
 if TYPE_CHECKING:
+    from stippler.brushes.kinds import Value
     from stippler.drawing.document import Document
     from stippler.drawing.preview import Preview
     from stippler.drawing.reference import Reference
 
 _HEADING_PX = 6.0  # shorter ways are shaking
 _VALUES_FILE = "tools.json"
-
-
-def all_tools(shelf: BrushShelf) -> tuple[Tool, ...]:
-    """Make every tool, in the order of the strip; a new one is a line here."""
-    brushes = (BrushTool(kind, shelf) for kind in KINDS)
-    areas = (AreaTool(), KnifeTool(), BucketTool(), GrowTool(), ProposalTool(), NodeTool())
-    return (*brushes, SelectTool(), *areas, LineTool(), PatternTool(), WarpTool())
 
 
 class Toolbox:
@@ -69,8 +53,10 @@ class Toolbox:
 
     Attributes
     ----------
-    tools : tuple of Tool
-        In the order of the strip.
+    cards : tuple of Card
+        What there is, in the order of the strip.
+    prepare : dict of callables by name
+        Given a tool when it is made.
     tool : Tool or None
         The one at hand; without one the pointer only looks around.
     shelf : BrushShelf
@@ -80,13 +66,13 @@ class Toolbox:
     state : ToolState
     """
 
-    def __init__(
-        self, path: Path, say: Say, seed: int = 0, tools: Sequence[Tool] | None = None
-    ) -> None:
+    def __init__(self, path: Path, say: Say, seed: int = 0) -> None:
         self._say, self._values_path = say, path.with_name(_VALUES_FILE)
         self.shelf = BrushShelf(path, say)
-        self.tools = tuple(all_tools(self.shelf) if tools is None else tools)
-        self._by_name = {tool.name: tool for tool in self.tools}
+        self.cards = all_cards(self.shelf)
+        self._cards = {card.name: card for card in self.cards}
+        self._made: dict[str, Tool] = {}
+        self.prepare: dict[str, Callable[[Tool], None]] = {}
         self.tool: Tool | None = None
         self.selection = Selection()
         self.lines = ChosenLines()
@@ -96,8 +82,7 @@ class Toolbox:
         self._n_strokes = seed
         self._from: Point | None = None  # where the pointer was when its heading was last looked at
         self._heading_rad = math.nan
-        self._load_values()
-        self._kept_values = self._own_values()
+        self._kept_values = self._load_values()
 
     # --- which tool -------------------------------------------------------------------------
 
@@ -106,7 +91,7 @@ class Toolbox:
 
         With the old one goes what it holds open.
         """
-        tool = self._by_name[name] if name else None
+        tool = self.made(name) if name else None
         if tool is not self.tool:
             self.state = RESTING
             if self.tool is not None:
@@ -115,9 +100,18 @@ class Toolbox:
             self.shelf.use_next(tool.kind.name)
         self.tool = tool
 
+    def made(self, name: str) -> Tool:
+        """Return a tool by its name; it is made when it is first asked for."""
+        if name not in self._made:
+            tool = self._made[name] = self._cards[name].made()
+            tool.use(self._kept_values.get(name, {}))
+            if name in self.prepare:
+                self.prepare[name](tool)
+        return self._made[name]
+
     def has(self, name: str) -> bool:
         """Return whether there is a tool of a name; an empty one is none at hand."""
-        return not name or name in self._by_name
+        return not name or name in self._cards
 
     @property
     def name(self) -> str:
@@ -156,17 +150,17 @@ class Toolbox:
         """Keep what has changed some seconds ago; return when to ask again, None is not at all."""
         return self.shelf.save_soon(now_s)
 
-    def _own_values(self) -> dict[str, object]:
-        return {tool.name: dict(tool.values) for tool in self.tools if tool.values}
+    def _own_values(self) -> dict[str, dict[str, Value]]:
+        own = {tool.name: dict(tool.values) for tool in self._made.values() if tool.values}
+        return self._kept_values | own
 
-    def _load_values(self) -> None:
+    def _load_values(self) -> dict[str, dict[str, Value]]:
         document, problem = read_document(self._values_path)
         if problem:
             self._say(problem, WARNING)
         kept = document.get("tools", {})
-        for name, values in kept.items() if isinstance(kept, dict) else ():
-            if name in self._by_name and isinstance(values, dict):
-                self._by_name[name].use(values)
+        kept = kept if isinstance(kept, dict) else {}
+        return {k: v for k, v in kept.items() if k in self._cards and isinstance(v, dict)}
 
     # --- input ------------------------------------------------------------------------------
 
@@ -252,7 +246,7 @@ class Toolbox:
         if document is not None and self.is_busy:
             self.state.cancel(self.desk(document, lambda x, y: (x, y), 1.0))
         self.state = RESTING
-        for tool in self.tools:
+        for tool in self._made.values():
             tool.forget()
         self.selection.forget()
         self.lines.choose(None)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.brushes.kinds import Parameter
+from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.line_edits import lines_of, meet, set_line
 from stippler.editor.messages import WARNING
@@ -93,26 +93,20 @@ def target_of(what: str, document: Document, sight: Desk | Sight) -> Target | No
 class WarpTool(Tool):
     """Bends what is chosen."""
 
-    name, label = "warp", "Warp"
-    tip = (
-        "Bends chosen dots and lines, or chosen areas with their dots, lines and borders, or all, "
-        "by one cage. Dots' sizes follow, so that tone is kept; where spacing has suffered it is "
-        "relaxed when you let go."
-    )
     shows_areas = True
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What a person can set."""
         return (
-            Parameter("what", "What", CHOSEN, "What is bent together.",
+            by_default("what", "What", CHOSEN, "What is bent together.",
                       options=(CHOSEN, AREAS, ALL)),
-            Parameter("how", "By", bending.CAGE, "What is taken hold of.",
+            by_default("how", "By", bending.CAGE, "What is taken hold of.",
                       options=(bending.CAGE, bending.MOVE, bending.PERSPECTIVE)),
-            Parameter("points", "Cage points", 4.0, "Each way.", 4, 12,
+            by_default("points", "Cage points", 4.0, "Each way.", 4, 12,
                       only=("how", (bending.CAGE,))),
-            Parameter("sizes", "Keep the tone", True, "Dots grow where they are drawn apart."),
-            Parameter("relaxes", "Relax after", True, "Where spacing has suffered."),
+            by_default("sizes", "Keep the tone", True, "Dots grow where they are drawn apart."),
+            by_default("relaxes", "Relax after", True, "Where spacing has suffered."),
         )  # fmt: skip
 
     def begin(self, event: Event, desk: Desk) -> ToolState | None:

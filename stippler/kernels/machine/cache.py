@@ -8,7 +8,6 @@ import re
 import tempfile
 from collections.abc import Iterable
 from functools import cache
-from importlib import metadata
 from pathlib import Path
 
 from platformdirs import user_cache_path
@@ -88,6 +87,8 @@ def _with_imports(path: Path) -> set[Path]:
 
 
 def _digest(sources: Iterable[Path]) -> str:
+    from importlib import metadata  # late, for the sake of the first frame
+
     digest = hashlib.sha256(f"numba {metadata.version('numba')}".encode())
     for source in sorted(sources):
         # numba itself compares a source's time, so what differs in time alone is another too

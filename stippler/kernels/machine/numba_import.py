@@ -10,11 +10,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
+from contextlib import contextmanager, nullcontext
+
+from stippler.hidden_import import hidden
 
 _PROBE = "scipy.linalg.cython_blas"
-_modules: dict[str, Any] = sys.modules
 _wanted = False
 
 
@@ -37,13 +37,7 @@ def drop_useless_variables() -> None:
 @contextmanager
 def importing_numba() -> Iterator[None]:
     """Hide the BLAS while numba looks for it, if that was asked for."""
-    if "numba" not in _modules:
+    if "numba" not in sys.modules:
         drop_useless_variables()
-    if not _wanted or _PROBE in _modules:
+    with hidden(_PROBE) if _wanted else nullcontext():
         yield
-        return
-    _modules[_PROBE] = None  # an import of it fails at once
-    try:
-        yield
-    finally:
-        del _modules[_PROBE]

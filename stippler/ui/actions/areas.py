@@ -7,8 +7,6 @@ from pathlib import Path
 
 from stippler.editor.area_files import READ, WRITTEN
 from stippler.editor.commands import CTRL, CTRL_SHIFT, Command, Key
-from stippler.editor.tools.grow_tool import GrowTool
-from stippler.editor.tools.proposal_tool import ProposalTool
 from stippler.editor.tools.tool import Desk
 from stippler.ui.actions.parts import Parts
 
@@ -67,9 +65,9 @@ def _work_commands(parts: Parts) -> Iterator[Command]:
         ("fill", "Fill areas", "Fill", "adds dots to each chosen area.", acts.fill, (), can_work),
         ("clear", "Clear areas", "Clear", "removes the dots of the chosen areas, but fixed ones.",
          acts.clear, (), can_work),
-        ("enlarge", "Enlarge the dots of areas", "Larger", "by 10 percent.",
+        ("enlarge", "Enlarge the dots of areas", "Larger", "by 10 %.",
          lambda: acts.resize(110.0), (), can_work),
-        ("reduce", "Reduce the dots of areas", "Smaller", "by 10 percent.",
+        ("reduce", "Reduce the dots of areas", "Smaller", "by 10 %.",
          lambda: acts.resize(100.0 / 1.1), (), can_work),
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)
@@ -77,21 +75,20 @@ def _work_commands(parts: Parts) -> Iterator[Command]:
 
 def _picture_commands(parts: Parts) -> Iterator[Command]:
     acts, painting, session = parts.area_acts, parts.painting, parts.session
-    tools = painting.toolbox.tools
-    grow = next((t for t in tools if isinstance(t, GrowTool)), None)
-    proposals = next((t for t in tools if isinstance(t, ProposalTool)), None)
+    toolbox = painting.toolbox
 
-    def doing(act: Callable[[Desk], None]) -> Callable[[], None]:
+    def make(name: str) -> Callable[[], None]:
+        def act(desk: Desk) -> None:
+            toolbox.made(name).make(desk)  # type: ignore[attr-defined]
+
         return lambda: painting.at_desk(act, parts.view.camera.px_per_mm)
 
-    if grow is not None:
-        yield Command("area.grown", "Make an area of what has grown", doing(grow.make),
-                      can=lambda: painting.toolbox.tool is grow, short="Make area",
-                      tip="the outline that is shown becomes an area.")  # fmt: skip
-    if proposals is not None:
-        yield Command("area.proposed", "Make areas of all proposals", doing(proposals.make),
-                      can=lambda: painting.toolbox.tool is proposals, short="Make areas",
-                      tip="all regions but the ground become areas.")  # fmt: skip
+    yield Command("area.grown", "Make an area of what has grown", make("grow"),
+                  can=lambda: toolbox.name == "grow", short="Make area",
+                  tip="the outline that is shown becomes an area.")  # fmt: skip
+    yield Command("area.proposed", "Make areas of all proposals", make("proposals"),
+                  can=lambda: toolbox.name == "proposals", short="Make areas",
+                  tip="all regions but the ground become areas.")  # fmt: skip
     yield Command("area.dark", "Dark parts as inverse areas", acts.dark_parts,
                   can=lambda: session.paintable and session.reference is not None,
                   short="Dark parts", tip="what is too dark for dots of the page's sizes becomes "

@@ -22,11 +22,13 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     def is_open() -> bool:
         return session.document is not None
 
-    yield Command("file.new", "New page", popups.new_page.ask, (Key("n", CTRL),))
+    yield Command("file.new", "New page", lambda: popups.new_page.ask(), (Key("n", CTRL),))
     yield Command("file.open", "Open", filing.ask_picture, (Key("o", CTRL),))
     yield Command("file.open_reference", "Open as reference only", filing.ask_reference,
                   tip="a picture to draw after by hand; no dots are made of it.")  # fmt: skip
-    yield Command("file.recent_files", "Recent files", popups.recent.ask, (Key("o", CTRL_SHIFT),))
+    yield Command(
+        "file.recent_files", "Recent files", lambda: popups.recent.ask(), (Key("o", CTRL_SHIFT),)
+    )
     yield Command("file.forget", "Forget recent pictures", filing.forget_recent,
                   can=lambda: bool(filing.recent()))  # fmt: skip
     yield Command("file.save", "Save", filing.save, (Key("s", CTRL),), can=is_open)
@@ -36,8 +38,8 @@ def file_commands(parts: Parts) -> Iterator[Command]:
     )
     yield Command("file.revert", "Revert to the file", filing.revert,
                   can=lambda: session.exports.file is not None)  # fmt: skip
-    yield Command("file.earlier", "Earlier versions", popups.earlier.ask, can=is_open)
-    yield Command("file.recover", "Recover lost drawings", popups.recovery.ask)
+    yield Command("file.earlier", "Earlier versions", lambda: popups.earlier.ask(), can=is_open)
+    yield Command("file.recover", "Recover lost drawings", lambda: popups.recovery.ask())
     yield Command("file.export_as", "Export", filing.export_as, (Key("e", CTRL),), can=has_dots)
     yield Command("file.export", "Export again", filing.export, (Key("e", CTRL_SHIFT),),
                   can=has_dots)  # fmt: skip
@@ -57,7 +59,9 @@ def edit_commands(parts: Parts) -> Iterator[Command]:
     yield Command("edit.undo", "Undo", painting.undo, (Key("z", CTRL),), can=can_undo)
     yield Command("edit.redo", "Redo", painting.redo, (Key("z", CTRL_SHIFT), Key("y", CTRL)),
                   can=can_redo)  # fmt: skip
-    yield Command("edit.preferences", "Preferences", popups.preferences.ask, (Key(",", CTRL),))
+    yield Command(
+        "edit.preferences", "Preferences", lambda: popups.preferences.ask(), (Key(",", CTRL),)
+    )
 
 
 def work_commands(parts: Parts) -> Iterator[Command]:
@@ -85,9 +89,12 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.stop", "Stop", session.stop, (Key("p", SHIFT),), can=is_busy)
     yield Command("work.relax", "Relax all dots", relax_all, (Key("l", CTRL),),
                   can=lambda: session.paintable and session.n_dots > 0)  # fmt: skip
-    yield Command("work.style", "Choose a style", parts.popups.styles.ask)
-    yield Command("work.reset", "Default values", reset)
-    yield Command("work.scale", "Scale the drawing", parts.popups.scale.ask,
+    yield Command("work.fill", "Fill the page", session.fill, can=lambda: session.paintable,
+                  tip="adds dots by the values under Drawing; one step to undo.")  # fmt: skip
+    yield Command("work.style", "Choose a style", lambda: parts.popups.styles.ask())
+    yield Command("work.reset", "Default values", reset,
+                  tip="in the panel Drawing; dots change with the next Start.")  # fmt: skip
+    yield Command("work.scale", "Scale the drawing", lambda: parts.popups.scale.ask(),
                   can=lambda: session.paintable,
                   tip="to another size or number of dots, its tone kept.")  # fmt: skip
     yield from _print_commands(parts)
@@ -96,7 +103,7 @@ def work_commands(parts: Parts) -> Iterator[Command]:
 def _print_commands(parts: Parts) -> Iterator[Command]:
     session = parts.session
     check = PrintCheck(session, parts.painting, parts.view)
-    parts.popups.exporting.print_check = check
+    parts.popups.print_check = check
 
     def has_dots() -> bool:
         return session.paintable and session.n_dots > 0
@@ -109,5 +116,7 @@ def _print_commands(parts: Parts) -> Iterator[Command]:
 def help_commands(parts: Parts) -> Iterator[Command]:
     """Yield commands that tell of others."""
     popups = parts.popups
-    yield Command("help.palette", "Find a command", popups.palette.ask, (Key("p", CTRL_SHIFT),))
-    yield Command("help.keys", "Shortcuts", popups.sheet.ask, (Key("f1"),))
+    yield Command(
+        "help.palette", "Find a command", lambda: popups.palette.ask(), (Key("p", CTRL_SHIFT),)
+    )
+    yield Command("help.keys", "Shortcuts", lambda: popups.sheet.ask(), (Key("f1"),))

@@ -42,6 +42,7 @@ class Panels:
         self._tabs: dict[str, Rect] = {}
         self.are_hidden = False
         self._home = 0  # where the first panel is docked
+        self._has_begun = False
 
     def turn_hidden(self) -> None:
         """Hide all panels, or show those again that were there."""
@@ -97,6 +98,7 @@ class Panels:
         for name, draw in self._parts.items():
             if self.is_open(name) and not self.are_hidden:
                 guarded(f"the panel {name}", lambda name=name, draw=draw: self._draw(name, draw))  # type: ignore[misc]
+        self._has_begun = True
         widgets.marks |= {f"panel {name}": tab for name, tab in self._tabs.items()}
         if survey:
             self._survey(guarded, widgets)
@@ -139,7 +141,8 @@ class Panels:
         self._home = self._home or imgui.get_window_dock_id()
         tab = imgui.internal.get_current_window().dc.dock_tab_item_rect
         self._tabs[name] = (tab.min.x, tab.min.y, tab.max.x, tab.max.y)
-        if shown:
+        if shown and (self._has_begun or not self._in_front):
+            # in the very first frame all tabs are shown, and one in front of the others is enough
             self._in_front.add(name)
             self._fields.panel = name
             try:

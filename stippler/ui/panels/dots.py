@@ -16,6 +16,8 @@ from stippler.ui.widgets import Widgets
 
 _USUAL_RANGE_MM = (0.12, 0.24)
 _APART = ("n_dots", "density_per_cm2", "size_range_mm")  # one may follow from the other
+_USUAL = tuple(p for p in PARAMETERS if p.name not in _APART and not p.is_more)
+_MORE = tuple(p for p in PARAMETERS if p.name not in _APART and p.is_more)
 _OF_BLANKS = ("iterations",)  # what counts on a page without a picture
 
 
@@ -34,10 +36,9 @@ def draw_dots(widgets: Widgets, session: Session, commands: Commands) -> None:
         _draw_style(widgets, session, commands)
         _draw_number(widgets, session, changes)
         _draw_sizes(widgets, session, changes)
-        rest = [one for one in PARAMETERS if one.name not in _APART]
-        changes |= draw_parameters(widgets, style, [one for one in rest if not one.is_more])
+        changes |= draw_parameters(widgets, style, _USUAL)
         if widgets.more("dots"):
-            changes |= draw_parameters(widgets, style, [one for one in rest if one.is_more])
+            changes |= draw_parameters(widgets, style, _MORE)
         if changes.get("first_dots", style.first_dots) != "pulse-density":
             changes["sizes"] = "tone"
     changed = {name: value for name, value in changes.items() if value != getattr(style, name)}

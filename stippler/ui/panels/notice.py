@@ -58,7 +58,7 @@ def draw_preparing(widgets: Widgets, share: float, canvas: Rect) -> None:
     imgui.push_font(widgets.fonts.heading, TEXT_PX * 1.2)
     _write_centred(widgets, "Getting ready for the first time", widgets.theme.text)
     imgui.pop_font()
-    told = "about half a minute, once on this computer"
+    told = "a minute or two, once on this computer"
     _write_centred(widgets, told, widgets.theme.faint)
     imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, 0.0))
     imgui.progress_bar(share, (-1.0, 5.0 * widgets.scale), "")

@@ -15,10 +15,10 @@ from stippler.ui.widgets import Widgets
 HEIGHT, LOW = 114.0, 46.0
 """Of the section, in the theme's pixels; and where there is little room."""
 
-_PREPARING_S = 25.0  # what a machine takes to prepare, more or less
+_PREPARING_S = 80.0  # what two cores take to prepare, more or less
 _STAGES = {
     work.READ: "reading the picture",
-    work.PREPARE: "getting ready for the first time, about half a minute",
+    work.PREPARE: "getting ready for the first time, a minute or two",
     "first dots": "placing dots",
     "relax": "evening out",
     "tone": "matching the tone",
@@ -145,6 +145,8 @@ def progress_share(session: Session) -> float:
 def progress_text(session: Session) -> str:
     """Return what is being done, in a few words."""
     text = _STAGES.get(session.stage, session.stage)
+    if session.stage == work.PREPARE and session.total > 1:
+        text = f"{text}: {session.done} of {session.total}"
     if session.stage == "relax":
         text = f"{text}, step {session.done:,} of {session.total:,}"
     return f"{text} (paused)" if session.phase == "paused" else text

@@ -155,15 +155,22 @@ def _fields(session: Session, sight: Sight, frames: FrameRate) -> list[Field]:
     dots = f"{session.n_dots:,} dot{'s'[: session.n_dots != 1]}" + (
         "" if sight.dots_shown else ", hidden"
     )
-    steps = f"{session.steps_per_s:.0f} steps/s" if session.steps_per_s else "–"
-    rate = f"{frames.per_s:.0f} frames/s" if frames.per_s else "–"
     turned = _turned(sight.camera)
     return [
         *([(turned, 112, "How the page lies on the screen.")] if turned else []),
         (place, 118, "Position of the pointer on the page, in mm from its top left corner."),
         (dots, 96 if sight.dots_shown else 146, "Dots in the drawing."),
+        *(_rates(session, frames) if session.busy else []),
+    ]
+
+
+def _rates(session: Session, frames: FrameRate) -> list[Field]:
+    """Return how quickly it goes, which is of use only while something goes on."""
+    steps = f"{session.steps_per_s:.0f} steps/s" if session.steps_per_s else "–"
+    rate = f"{frames.per_s:.0f} frames/s" if frames.per_s else "–"
+    return [
+        (steps, 84, "Steps of the work a second."),
         (rate, 84, "Frames drawn a second; none are drawn while nothing changes."),
-        (steps, 84, "Relaxation steps a second, in the last work."),
     ]
 
 

@@ -67,7 +67,7 @@ def draw_tools(
     tip = "The pointer only looks around."
     if draw_tool(widgets, commands["tool.none"], "", tip, used=used == "", side=shape.side):
         commands["tool.none"].run()
-    for k, tool in enumerate(toolbox.tools, 1):
+    for k, tool in enumerate(toolbox.cards, 1):
         if k % shape.columns:
             imgui.same_line()
         command = commands[f"tool.{tool.name}"]
@@ -104,5 +104,5 @@ def draw_tool(
     colour = widgets.packed(theme.on_accent if used else theme.text)
     draw_icon(name, command.label, Pen(draw, corner.x + gap, corner.y + gap, icon, colour))
     widgets.note(f"{mark}{command.label}")
-    widgets.tip(f"{command.hint}\n{tip}")
+    widgets.tip(f"{command.hint}\n{tip}", at_once=command.hint)
     return pressed

@@ -10,8 +10,9 @@ from typing import Any
 from imgui_bundle import imgui
 
 from stippler.brushes.brush import Brush
-from stippler.brushes.kinds import Parameter, Value
+from stippler.brushes.kinds import Value
 from stippler.brushes.tip import TIP_SHAPES, Tip
+from stippler.drawing.parameter import Kind, Parameter
 from stippler.editor.commands import Commands
 from stippler.editor.tools.brush_shelf import BrushShelf
 from stippler.editor.tools.brush_tool import BrushTool
@@ -127,15 +128,14 @@ def _draw_presets(widgets: Widgets, shelf: BrushShelf, tool: BrushTool) -> None:
 
 
 def _draw_parameter(widgets: Widgets, value: Any, about: Parameter) -> Any:
-    if about.options:
-        labels = [option.capitalize() for option in about.options]
-        return about.options[
-            widgets.choice(about.label, labels, about.options.index(value), about.tip)
-        ]
-    if isinstance(about.default, bool):
-        return widgets.check(about.label, value, about.tip)
-    form = f"%.{0 if about.high - about.low > 99 else 2}f {about.unit.replace('%', '%%')}"
-    return widgets.slider(about.label, value, about.low, about.high, about.tip, form.rstrip())
+    if about.kind is Kind.CHOICE:
+        labels = [choice.label for choice in about.choices]
+        k = widgets.choice(about.label, labels, about.values.index(value), about.help)
+        return about.values[k]
+    if about.kind is Kind.FLAG:
+        return widgets.check(about.label, value, about.help)
+    form = f"%.{about.decimals}f {about.unit.replace('%', '%%')}"
+    return widgets.slider(about.label, value, about.low, about.high, about.help, form.rstrip())
 
 
 def _draw_tip(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> None:

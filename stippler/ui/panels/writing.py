@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from stippler.editor.exports import Exports
+from stippler.editor.exports import Exports, bytes_text
 from stippler.names import shown
-from stippler.ui.popups.export_dialog import bytes_text
 from stippler.ui.widgets import Rect, Widgets
 
 SHOWN_AFTER_S = 0.3

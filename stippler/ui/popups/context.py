@@ -68,7 +68,7 @@ class ContextPalette:
         """Draw the tools in rows; return whether one was chosen."""
         chosen, used = False, self._toolbox.name
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (3.0 * widgets.scale,) * 2)
-        for k, tool in enumerate(self._toolbox.tools):
+        for k, tool in enumerate(self._toolbox.cards):
             if k % _COLUMNS:
                 imgui.same_line()
             command = commands[f"tool.{tool.name}"]

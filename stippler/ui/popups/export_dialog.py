@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from stippler.editor.export_choices import ENDINGS, Choices
+from stippler.editor.exports import bytes_text
 from stippler.editor.session import Session
 from stippler.errors import StipplerError
 from stippler.jobs.export_look import Asked, Look, look
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 TITLE = "Export the drawing"
 _WIDTH, _HEIGHT, _FIELDS = 1080.0, 740.0, 344.0
 _NOTCH = 5.0  # lines that the wheel goes
-_UNITS = ((1e6, "MB", 1), (1e3, "kB", 0))
 
 
 @dataclass(slots=True)
@@ -392,11 +392,3 @@ def _scroll_beside_typing() -> None:
     blocked = imgui.HoveredFlags_.allow_when_blocked_by_active_item
     if wheel and imgui.is_any_item_active() and imgui.is_window_hovered(blocked):
         imgui.set_scroll_y(imgui.get_scroll_y() - wheel * _NOTCH * imgui.get_text_line_height())
-
-
-def bytes_text(n: int) -> str:
-    """Return a size as people say it."""
-    for unit, name, decimals in _UNITS:
-        if n >= unit:
-            return f"{n / unit:.{decimals}f} {name}"
-    return f"{n} bytes"
