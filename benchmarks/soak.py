@@ -43,12 +43,11 @@ if TYPE_CHECKING:
 _SIZE = (1000, 700)
 _ROUND_S = 20.0
 N_DOTS = 100_000
-MOST_MB = 60.0
+MOST_MB = 150.0
 """What memory in use may grow by after the third round, however long it goes on.
 
-It is measured once the allocator has given back what is free: its arenas, several a thread, keep
-60 to 170 MB of that, more or less from round to round, which says nothing about growth. In use are
-caches with limits of their own: pictures of styles, kernels, fonts and GL's copies.
+It is measured once the allocator has given back what is free: its arenas keep 60 to 170 MB of that,
+more or less from round to round, which says nothing about growth.
 """
 
 _EXPORTS = (".svg", ".png", ".pdf", ".csv", ".dxf")
