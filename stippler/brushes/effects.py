@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stippler.brushes import move, scatter, selection, shape, size
 from stippler.brushes.brush import Brush
+from stippler.brushes.evening_out import FollowedSizes, evened_out
 from stippler.brushes.jitter import jitter
-from stippler.brushes.local_cells import areas_of, centroids_of
+from stippler.brushes.local_cells import areas_of
 from stippler.brushes.stroke_path import Stamp
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
@@ -38,6 +39,7 @@ class Touch:
     rows: Rows
     weight: Floats
     count: scatter.Count
+    sizes: FollowedSizes
 
     @property
     def position_mm(self) -> Floats:
@@ -78,7 +80,7 @@ class Touch:
 
 def touch_of(touch: Touch, rows: Rows, weight: Floats) -> Touch:
     """Return a touch on other rows."""
-    return Touch(touch.document, touch.brush, touch.stamp, touch.rng, rows, weight, touch.count)
+    return replace(touch, rows=rows, weight=weight)
 
 
 # --- dots come and go ---------------------------------------------------------------------------
@@ -148,13 +150,16 @@ def _set_fixed(touch: Touch, fixed: bool) -> None:
 
 
 def relax(touch: Touch) -> None:
-    """Move dots towards the centroids of their cells."""
+    """Even dots out; sizes that were solved for the tone follow when the stroke ends."""
     touch = touch.free
-    reference = touch.reference if touch.brush.value("by_tone") else None
-    centroid = centroids_of(touch.document, touch.rows, reference)
+    if not len(touch.rows):
+        return
+    by_tone = bool(touch.brush.value("by_tone"))
+    evened = evened_out(touch.document, touch.rows, by_tone)
+    touch.sizes.note(touch.document, touch.rows, evened)
     share = np.minimum(touch.weight * touch.share("strength"), 1.0)[:, None]
     old = touch.position_mm
-    touch.document.move(touch.rows, old + share * (centroid - old))
+    touch.document.move(touch.rows, old + share * (evened.moved_mm - old))
 
 
 def shake(touch: Touch) -> None:

@@ -135,7 +135,7 @@ KINDS: tuple[Kind, ...] = (
             _STRENGTH,
             by_default("per_s", "Steps / s", 30.0, "Relaxation steps a second.", 1, 60),
             by_default(
-                "by_tone", "Follow the picture", False, "Keeps dots denser where it is darker."
+                "by_tone", "Keep the tone", True, "Dots stay denser where the picture is darker."
             ),
         ),
         most_ticks=6,

@@ -68,20 +68,34 @@ def cells_of(document: Document, rows: Rows, reference: Reference | None = None)
     left, around = np.arange(len(rows)), None
     while len(left):
         at = document.dots.position_mm[rows[left]]
-        around = _box_around(document, at, around)
-        for engine, mine, which in _engines(document, rows[left], around, reference):
-            where = left[which]
-            found.moved_mm[where], found.area_mm2[where], found.reach_mm[where] = engine.look(mine)
-        left = left[_lacks(document, at, found.reach_mm[left], around)]
-        if len(left):
-            margin = 2.1 * found.reach_mm[left][:, None]
-            at = document.dots.position_mm[rows[left]]
-            low, high = (at - margin).min(axis=0), (at + margin).max(axis=0)
-            around = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+        around = box_around(document, at, around)
+        density = None if reference is None else density_in(reference, around)
+        for place in places_of(document, rows[left], around):
+            where = left[place.which]
+            engine = LocalRelaxation(
+                document.dots.position_mm[place.rows], place.outlines,
+                density=density, movable=place.movable,
+            )  # fmt: skip
+            found.moved_mm[where], found.area_mm2[where], found.reach_mm[where] = engine.look(
+                place.mine
+            )
+        reach = found.reach_mm[left]
+        lacking = lacks(document, at, reach, around)
+        around = wider(at[lacking], reach[lacking])
+        left = left[lacking]
     return found
 
 
-def _lacks(document: Document, at: Floats, reach_mm: Floats, around: Box) -> NDArray[np.bool_]:
+def wider(at: Floats, reach_mm: Floats) -> Box | None:
+    """Return a box around cells that reach so far, in which nothing that cuts them is left out."""
+    if not len(at):
+        return None
+    margin = 2.1 * reach_mm[:, None]
+    low, high = (at - margin).min(axis=0), (at + margin).max(axis=0)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def lacks(document: Document, at: Floats, reach_mm: Floats, around: Box) -> NDArray[np.bool_]:
     """Tell which cells might be cut by a dot beyond a box, or lean out of it."""
     page = document.drawing.page
     room = np.full(len(at), np.inf)
@@ -90,14 +104,40 @@ def _lacks(document: Document, at: Floats, reach_mm: Floats, around: Box) -> NDA
             room = np.minimum(room, at[:, axis] - around[axis])
         if around[axis + 2] < size:
             room = np.minimum(room, around[axis + 2] - at[:, axis])
-    lacks: NDArray[np.bool_] = 2.0 * reach_mm > room
-    return lacks
+    found: NDArray[np.bool_] = 2.0 * reach_mm > room
+    return found
 
 
-def _engines(
-    document: Document, rows: Rows, around: Box, reference: Reference | None
-) -> Iterator[tuple[LocalRelaxation, NDArray[np.intp], NDArray[np.intp]]]:
-    """Yield for each area an engine of the dots around, those asked for in it, and in `rows`."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Place:
+    """The part of an area in which the cells of some of its dots lie.
+
+    Attributes
+    ----------
+    area : int
+    outlines : list of Polygon
+    rows : (n,) int64
+        Of the dots in it, sorted.
+    mine, which : (k,) int64
+        Those asked for: where they are in `rows`, and in the list that was asked for.
+    """
+
+    area: int
+    outlines: list[shapely.Polygon]
+    rows: Rows
+    mine: NDArray[np.intp]
+    which: NDArray[np.intp]
+
+    @property
+    def movable(self) -> NDArray[np.bool_]:
+        """Tell which of its dots are asked for."""
+        movable = np.zeros(len(self.rows), np.bool_)
+        movable[self.mine] = True
+        return movable
+
+
+def places_of(document: Document, rows: Rows, around: Box) -> Iterator[Place]:
+    """Yield for each area the part of it in a box that holds some dots, if it knows any of them."""
     near = document.in_box(around)
     near_area = document.dots.area[near]
     for k in np.flatnonzero(np.bincount(document.dots.area[rows])):
@@ -110,12 +150,7 @@ def _engines(
         at = np.searchsorted(own, rows)
         found = own[np.minimum(at, len(own) - 1)] == rows if len(own) else at < 0
         if found.any():
-            density = _density(reference, around)
-            movable = np.zeros(len(own), np.bool_)
-            movable[at[found]] = True
-            position_mm = document.dots.position_mm[own]
-            engine = LocalRelaxation(position_mm, outlines, density=density, movable=movable)
-            yield engine, at[found], np.flatnonzero(found)
+            yield Place(int(k), outlines, own, at[found], np.flatnonzero(found))
 
 
 def _part_of_area(document: Document, k: int, around: Box) -> tuple[list[shapely.Polygon], bool]:
@@ -161,7 +196,7 @@ def _polygons(geometry: shapely.Geometry) -> list[shapely.Polygon]:
     return [p for p in shapely.get_parts(geometry) if p.geom_type == "Polygon" and p.area > 0.0]
 
 
-def _box_around(document: Document, position_mm: Floats, least: Box | None) -> Box:
+def box_around(document: Document, position_mm: Floats, least: Box | None) -> Box:
     """Return a box around dots with a margin; one that holds `least` if that is given."""
     (x0, y0), (x1, y1) = position_mm.min(axis=0), position_mm.max(axis=0)
     page = document.drawing.page
@@ -179,13 +214,17 @@ def _box_around(document: Document, position_mm: Floats, least: Box | None) -> B
     )  # fmt: skip
 
 
-def _density(reference: Reference | None, box: Box) -> DensityField | None:
+def density_in(reference: Reference, box: Box) -> DensityField:
     """Cut the weight out of the reference: its square, since dots settle at the weight's root."""
-    if reference is None:
-        return None
+    field = darkness_in(reference, box)
+    return DensityField(np.square(field.values), field.pixel_mm, field.origin_mm)
+
+
+def darkness_in(reference: Reference, box: Box) -> DensityField:
+    """Cut the part in a box out of the reference."""
     h, w = reference.darkness.shape
     side = reference.pixel_mm
     i0, j0 = (min(max(math.floor(v / side), 0), n - 1) for v, n in ((box[0], w), (box[1], h)))
     i1, j1 = (min(max(math.ceil(v / side), 1), n) for v, n in ((box[2], w), (box[3], h)))
     part = reference.darkness[j0 : max(j1, j0 + 1), i0 : max(i1, i0 + 1)]
-    return DensityField(np.square(part), side, (i0 * side, j0 * side))
+    return DensityField(part, side, (i0 * side, j0 * side))

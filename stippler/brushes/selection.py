@@ -8,8 +8,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stippler.brushes.evening_out import FollowedSizes, evened_out
 from stippler.brushes.jitter import jitter
-from stippler.brushes.local_cells import centroids_of
 from stippler.brushes.shape import reshape, resized
 from stippler.drawing.document import Document
 from stippler.drawing.dots import FIXED, FREE, NO_CURVE, Dots
@@ -98,11 +98,15 @@ def hold(document: Document, rows: Rows, fixed: bool) -> None:
 
 
 def relax(document: Document, ids: Ids) -> None:
-    """Move the free dots to the centroids of their cells, once."""
+    """Even the free dots out by one step; they keep the tone, where there is a picture."""
     rows = alive(document, ids)
     rows = rows[~document.dots.is_fixed(rows)]
-    if len(rows):
-        document.move(rows, centroids_of(document, rows))
+    if not len(rows):
+        return
+    evened, sizes = evened_out(document, rows, by_tone=True), FollowedSizes()
+    sizes.note(document, rows, evened)
+    document.move(rows, evened.moved_mm)
+    sizes.solve(document)
 
 
 def shake(document: Document, ids: Ids, rng: np.random.Generator) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from stippler.brushes.brush import Brush
 from stippler.brushes.effects import EFFECTS, Touch
+from stippler.brushes.evening_out import FollowedSizes
 from stippler.brushes.scatter import Count
 from stippler.brushes.stroke_path import PointerSample, Spacer, Stamp, Ticker, smoothing_of
 from stippler.drawing.document import Document
@@ -52,6 +53,7 @@ class Stroke:
         step_s = 1.0 / (per_s if about.most_ticks else _TICKS_PER_S)
         self._ticker = Ticker(step_s) if about.rhythm == "time" else None
         self._spacer = Spacer(brush.spacing * brush.radius_mm, heading_rad)
+        self._sizes = FollowedSizes()
         self._dragged: tuple[int, float, float] | None = None
         self._pressed = False
         self.end = first
@@ -78,7 +80,16 @@ class Stroke:
         self.follow(sample)
         if self._document.in_stroke:
             self._guarded(stamp for p in self._smoothing.end() for stamp in self._pace(p))
+            self._end()
         return self._document.commit()
+
+    def _end(self) -> None:
+        """Do what waits for the last stamp."""
+        try:
+            self._sizes.solve(self._document)
+        except BaseException:
+            self.cancel()
+            raise
 
     def cancel(self) -> None:
         """Take back all of it."""
@@ -120,7 +131,7 @@ class Stroke:
         weight = brush.tip.weight(offset, brush.radius_mm)
         under = weight > 0.0
         rows, weight = rows[under], weight[under] * stamp.pressure
-        touch = Touch(document, brush, stamp, self._rng, rows, weight, self._count)
+        touch = Touch(document, brush, stamp, self._rng, rows, weight, self._count, self._sizes)
         EFFECTS[brush.kind](touch)
 
     def _drag(self, stamp: Stamp) -> None:

@@ -40,13 +40,21 @@ class DensityField:
             raise ParameterError("a density is a 2-d field with at least one pixel", "density")
         if not (float(values.min()) >= 0.0 and float(values.max()) <= _DENSEST):
             raise ParameterError(f"has to be between 0 and {_DENSEST:g}", "density")
-        sides = np.broadcast_to(np.asarray(self.pixel_mm, np.float64), (2,))
-        if not (np.isfinite(sides) & (sides > 0)).all():
+        sides = self.sides_mm
+        if not all(math.isfinite(side) and side > 0 for side in sides):
             raise ParameterError(f"{self.pixel_mm} mm is no pixel size", "density")
-        if not np.isfinite(np.asarray(self.origin_mm, np.float64)).all():
+        if not all(math.isfinite(value) for value in self.origin_mm):
             raise ParameterError(f"{self.origin_mm} is no position", "density")
         object.__setattr__(self, "values", values)
-        object.__setattr__(self, "pixel_mm", (float(sides[0]), float(sides[1])))
+        object.__setattr__(self, "pixel_mm", sides)
+
+    @property
+    def sides_mm(self) -> tuple[float, float]:
+        """Width and height of a pixel."""
+        if isinstance(self.pixel_mm, tuple):
+            width, height = self.pixel_mm
+            return float(width), float(height)
+        return float(self.pixel_mm), float(self.pixel_mm)
 
     @classmethod
     def over_box(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,6 +34,8 @@ def running_sums(density: Weights | None, parts: Compartments) -> Field:
     """
     if density is None:
         return NO_FIELD
+    if isinstance(density, DensityField) and len(parts) == 1:
+        return _sums_of_one(density, parts)
     sides = np.broadcast_to(np.asarray(density.pixel_mm, np.float64), (2,))
     origin = np.asarray(density.origin_mm, np.float64)
     shape = density.levels.shape if isinstance(density, PictureField) else density.values.shape
@@ -52,6 +56,28 @@ def running_sums(density: Weights | None, parts: Compartments) -> Field:
     parallel_for(sum_rows, int(row_start[-1]), values, tables, row_start, window, sums, grain=64)
     frame = np.column_stack([box[:, :2] * sides + origin, np.broadcast_to(sides, (len(box), 2))])
     return Field(sums, frame[window_of], window[window_of])
+
+
+def _sums_of_one(density: DensityField, parts: Compartments) -> Field:
+    """Return the sums of a field for one compartment: brushes ask for them with each stamp."""
+    sides, origin = density.sides_mm, density.origin_mm
+    rows, columns = density.values.shape
+    x0, y0, x1, y1 = parts.box[0].tolist()
+    low, high = [], []
+    for axis, (a, b, most) in enumerate(((x0, x1, columns), (y0, y1, rows))):
+        first = math.floor((a - origin[axis]) / sides[axis] - _ROUNDING)
+        last = math.ceil((b - origin[axis]) / sides[axis] + _ROUNDING)
+        low.append(min(max(first, 0), most))
+        high.append(max(min(max(last, 0), most), low[axis]))
+    h, w = high[1] - low[1], high[0] - low[0]
+    window = np.array([[0, h, w, 0, 0, 0]])
+    part = density.values[low[1] : high[1], low[0] : high[0]]
+    values = np.ascontiguousarray(part, np.float32).view()
+    values.flags.writeable = False  # kernels compile for one kind
+    sums = np.empty(2 * max(h * (w + 1), 1))
+    parallel_for(sum_rows, h, values, _NO_TABLES, np.array([0, h]), window, sums, grain=64)
+    corner = [low[axis] * sides[axis] + origin[axis] for axis in (0, 1)]
+    return Field(sums, np.array([[*corner, *sides]]), window)
 
 
 def _table_of_compartment(density: Weights, parts: Compartments) -> Whole:

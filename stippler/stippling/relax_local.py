@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stippler.errors import ParameterError
 from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
-from stippler.kernels.cells.tables import Dots, Grid, Moves, Stars
+from stippler.kernels.cells.tables import Dots, Grid, Moves, Spacing, Stars
 from stippler.kernels.dots.bucket_grid import find_in_circle, place_dots
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
@@ -164,13 +164,19 @@ class LocalRelaxation:
             owner = np.asarray(compartment_of_dot, np.int32)
         return self._parts.find(xy, owner)
 
-    def _compute(self, slots: NDArray[np.int32], cells: NDArray[np.float64] = _NO_CELLS) -> None:
-        """Compute cells and where they take their dots; measure them if there is room."""
+    def _compute(
+        self,
+        slots: NDArray[np.int32],
+        cells: NDArray[np.float64] = _NO_CELLS,
+        stars: Stars = _NO_STARS,
+        spacing: Spacing = LLOYD,
+    ) -> None:
+        """Compute cells and where they take their dots; measure and note them if there is room."""
         field, cap = self._field, CORNER_CAP
         while len(slots):
             parallel_for(
                 relax_dots, len(slots), cap, slots, False, self._dots, self._table,
-                self._grid.border, field, 1.0, self._moves, cells, _NO_STARS, NO_OUTLINES, LLOYD,
+                self._grid.border, field, 1.0, self._moves, cells, stars, NO_OUTLINES, spacing,
                 grain=128, chunks=2,
             )  # fmt: skip
             slots = slots[self._moves.kind[slots] == TOO_MANY_CORNERS]

@@ -6,6 +6,7 @@ See `stippler.kernels.cells.spacing` for the rules, `docs/quality.md` for what t
 from __future__ import annotations
 
 from dataclasses import astuple, dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,8 +52,13 @@ class Rules:
     least: float = 0.0
 
     def array(self) -> NDArray[np.float64]:
-        """Return what kernels read."""
-        return np.array(astuple(self))
+        """Return what kernels read; not to be written."""
+        return _array_of(self)
+
+
+@cache
+def _array_of(rules: Rules) -> NDArray[np.float64]:
+    return np.array(astuple(rules))
 
 
 RULES = Rules()
