@@ -63,7 +63,7 @@ class _Desk:
         """Move the pointer to a place of the page; return where that is in the window."""
         editor = self.app.editor
         x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
-        left, top = editor.pointer._origin_px
+        left, top = editor.pointer.origin_px
         self.move(round(x + left), round(y + top))
         return round(x + left), round(y + top)
 

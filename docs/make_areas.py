@@ -1,6 +1,6 @@
-"""Make the pictures of `docs/areas.md`: the window with areas, and the paper's Fig. 2.
+"""Make the pictures of `docs/areas.md`: the window with areas, the paper's Fig. 2, and borders.
 
-``python docs/make_areas.py [--only window|eye]``; without a display, some minutes.
+``python docs/make_areas.py [--only window|eye|borders]``; without a display, some minutes.
 
 `docs/areas-eye.png` is what Fig. 2 of Deussen et al. (2000) shows: the eye and its surroundings
 relaxed apart, so that the border between them is enhanced; left as one area, right as two.
@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from stippler.api import process
@@ -36,12 +37,14 @@ SIDE_PX, SIDE_MM = 420, 70.0
 def main() -> None:
     """Make the pictures asked for."""
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--only", choices=("window", "eye"))
+    options.add_argument("--only", choices=("window", "eye", "borders"))
     only = options.parse_args().only
-    if only != "eye":
+    if only in (None, "window"):
         make_window(DOCS / "areas.png")
-    if only != "window":
+    if only in (None, "eye"):
         make_eye(DOCS / "areas-eye.png")
+    if only in (None, "borders"):
+        make_borders(DOCS / "areas-borders.png")
 
 
 def make_window(out: Path) -> None:
@@ -107,6 +110,32 @@ def make_eye(out: Path) -> None:
             pictures.append(np.array(Image.open(path).convert("L")))
     gap = np.full((len(pictures[0]), 40), 255, np.uint8)
     Image.fromarray(np.hstack([pictures[0], gap, pictures[1]])).save(out, optimize=True)
+
+
+def make_borders(out: Path) -> None:
+    """Draw a piece of the ammonite as two areas, with walls, as is, and seen through."""
+    drawn = [_halved(border) for border in ("wall", "automatic", "through")]
+    gap = np.full((len(drawn[0]), 30), 255, np.uint8)
+    Image.fromarray(np.hstack([drawn[0], gap, drawn[1], gap, drawn[2]])).save(out, optimize=True)
+
+
+def _halved(border: str) -> NDArray[np.uint8]:
+    """Return a piece of the ammonite drawn as two areas that meet in a slanting line."""
+    whole = 1.0 - np.array(Image.open(SAMPLE).convert("L"), np.float32) / 255.0
+    h, w = whole.shape
+    piece = np.ascontiguousarray(whole[2 * h // 5 : 4 * h // 5, w // 5 : w // 5 + 2 * h // 5])
+    reference = Reference(0.15 + 0.75 * piece, SIDE_MM / 2)
+    nothing = np.empty((0, 2)), np.empty(0, np.float32)
+    style = Style(n_dots=2_400, border=border)
+    document = Document(Drawing.from_reference(reference, *nothing, style))
+    w, h = reference.width_mm, reference.height_mm
+    half = Outline.polyline([(0, 0), (0.65 * w, 0), (0.35 * w, h), (0, h)], closed=True)
+    edit_areas(document, "Left", lambda areas: edits.add(areas, half))
+    drawing = process(document.drawing, sorted(document.drawing.areas))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "borders.png"
+        drawing.save(path, dpi=350)
+        return np.array(Image.open(path).convert("L"))
 
 
 if __name__ == "__main__":

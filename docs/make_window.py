@@ -18,8 +18,6 @@ from PIL import ImageGrab
 
 ROOT = Path(__file__).resolve().parent.parent
 LENS_INPUT = ("click", "--repeat", "7", "--delay", "30", "4", "key", "z")
-CANVAS_LEFT, STATUS_HEIGHT = 366, 28
-CANVAS_TOP = 24
 EDITOR = "from stippler.start import main; main()"
 
 
@@ -65,7 +63,7 @@ def main() -> None:
         time.sleep(1.0)
         shot = ImageGrab.grab(xdisplay=display).convert("RGB")
         if chosen.lens:
-            shot = shot.crop((CANVAS_LEFT, CANVAS_TOP, width, height - STATUS_HEIGHT)).quantize(64)
+            shot = shot.crop(canvas_of((width, height))).quantize(64)
         shot.save(out, optimize=True)
     finally:
         editor.terminate()
@@ -73,6 +71,19 @@ def main() -> None:
         server.terminate()
         server.wait()
         settings.cleanup()
+
+
+def canvas_of(size: tuple[int, int]) -> tuple[int, int, int, int]:
+    """Ask an editor of that size, without a display, where its canvas is."""
+    from stippler.app import App
+    from stippler.drawing.style import Style
+    from stippler.ui.window.scripted_host import Host
+
+    app = App(Style(), tone="linear", width_mm=148.0, size=size, offscreen=True)
+    try:
+        return Host(app.window, app.editor, app.step).canvas()
+    finally:
+        app.close()
 
 
 def wait_until_idle(pid: int) -> None:

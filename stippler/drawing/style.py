@@ -18,7 +18,7 @@ DEFAULT_PEN = "technical-pen"
 MAX_DOTS = 20_000_000
 
 _FIRST_DOTS = (
-    Choice("pulse-density", "By the picture", "Pulse density: follows the picture best."),
+    Choice("pulse-density", "By the picture", "Follows the picture best (pulse-density)."),
     Choice("floyd-steinberg", "Error diffusion", "Floyd and Steinberg's, as on a screen."),
     Choice("random", "By chance", "Anywhere, more in the dark."),
     Choice("hexagonal", "In rows", "A hexagonal grid, whatever the tone."),
@@ -41,17 +41,27 @@ _SIZES = (
 )  # fmt: skip
 _SPACINGS = (
     Choice("even", "Even, without rows"),
-    Choice("lloyd", "Lloyd's, with rows"),
+    Choice("lloyd", "Even, with rows", "Lloyd's relaxation alone; rows grow, like cloth."),
     Choice("hexagonal", "Hexagonal grid", "At equal distances; sizes alone carry the tone."),
     Choice("square", "Square grid", "At equal distances; sizes alone carry the tone."),
     Choice("along", "Rows along a direction", "Strokes of dots, closer in the dark."),
-    Choice("delaunay-mean", "Mean of neighbours"),
-    Choice("springs", "Springs"),
+    Choice("delaunay-mean", "Mean of neighbours", "Each dot goes to the middle of its neighbours."),
+    Choice("springs", "Springs", "Neighbours push and pull each other."),
 )
 _JITTERS = (
     Choice("spacing", "Spacing", "As far everywhere, by the mean spacing."),
     Choice("cell", "Cell", "By each dot's own cell: dots in the dark move less."),
 )
+AUTOMATIC, WALL, THROUGH, BLEED = "automatic", "wall", "through", "bleed"
+_BORDERS = (
+    Choice(AUTOMATIC, "Automatic", "Dots run off the page's edge; other borders are walls."),
+    Choice(WALL, "Wall", "Dots line up along the border, at the page's edge too."),
+    Choice(
+        THROUGH, "Through",
+        "Neighbours of this style that are processed together are drawn as one, without a seam.",
+    ),
+    Choice(BLEED, "Bleed", "Dots run off all of the border, as off the edge of a page."),
+)  # fmt: skip
 _DIRECTIONS = (
     Choice("pen", "Pen's", "As the pen has it."),
     Choice("set", "Set", "Along the direction given."),
@@ -91,7 +101,7 @@ class Style:
         low=0.01, high=1e6, unit="/cm²", may_lack=True, keyword="density",
     )  # fmt: skip
     iterations: int = parameter(
-        Kind.WHOLE, 20, "Evening out", "Relaxation steps: each evens out the spacing a little "
+        Kind.WHOLE, 20, "Evening out", "Steps of relaxation; each evens out the spacing a little "
         "more; 10 to 20 suffice.", low=0, high=100_000,
     )  # fmt: skip
     seed: int = parameter(
@@ -176,6 +186,10 @@ class Style:
     polarity: str = parameter(
         Kind.CHOICE, "black-on-white", "Polarity", "Black dots on white paper, or white dots on a "
         "ground of ink.", choices=_POLARITIES, is_more=True,
+    )  # fmt: skip
+    border: str = parameter(
+        Kind.CHOICE, AUTOMATIC, "Border", "What its border is to the dots of an area.",
+        choices=_BORDERS, is_more=True,
     )  # fmt: skip
     name: str = ""
 

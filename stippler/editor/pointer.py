@@ -34,13 +34,13 @@ class Pointer:
 
     def __init__(self, view: View) -> None:
         self._view = view
-        self._origin_px: Point = (0.0, 0.0)
+        self.origin_px: Point = (0.0, 0.0)
         self.state: State = Idle()
         self.at_px: Point | None = None
 
     def place(self, origin_px: Point) -> None:
         """Say where in the window the canvas begins."""
-        self._origin_px = origin_px
+        self.origin_px = origin_px
 
     def take(self, event: Event, *, elsewhere: bool) -> None:
         """Take an event; `elsewhere` is whether a panel has the pointer.
@@ -79,5 +79,5 @@ class Pointer:
 
     def local(self, event: _Placed) -> _Placed:
         """Return an event in the canvas's coordinates."""
-        x, y = self._origin_px
+        x, y = self.origin_px
         return replace(event, x_px=event.x_px - x, y_px=event.y_px - y)

@@ -43,7 +43,7 @@ def process(session: Session, areas: Sequence[int]) -> bool:
     source = session.source
     session.launch(
         lambda: process_areas(tasks),
-        lambda k: Processing(k, "first dots", source, tuple(chosen)),
+        lambda k: Processing(k, "first dots", source, tuple(a for t in tasks for a in t.areas)),
     )
     return True
 

@@ -16,22 +16,25 @@ if TYPE_CHECKING:
 
 
 def tasks_of(document: Document, areas: Sequence[int]) -> list[AreaTask]:
-    """Return what stippling some areas of a document takes, one task each.
+    """Return what stippling some areas of a document takes.
+
+    Areas that see through their borders have one task together.
 
     Raises
     ------
     ParameterError, GeometryError
         If an area cannot be stippled.
     """
-    from stippler.stippling.tasks import box_around, stippling
+    from stippler.stippling.tasks import box_around, joined, part_of_all, stippling
 
     drawing, partition = document.drawing, document.partition
     tasks = []
-    for area in areas:
+    for group in joined(drawing, areas, partition):
         near = None
-        if area in drawing.areas and not partition.part_of(area).is_empty:
-            near = document.in_box(box_around(partition.part_of(area)))
-        tasks.append(stippling(drawing, area, partition, near))
+        if all(k in drawing.areas for k in group):
+            part = part_of_all(partition, group)
+            near = None if part.is_empty else document.in_box(box_around(part))
+        tasks.append(stippling(drawing, group, partition, near))
     return tasks
 
 
@@ -46,10 +49,12 @@ def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Itera
     finished: tuple[tuple[int, Progress], ...] = ()
     for one in tasks:
         for progress in run(_beside(one, finished), snapshots=snapshots):
+            of_each = one.of_each(progress)
             if progress.stage == DONE:
-                finished = (*finished, (one.area, progress))
-            yield Work(progress.stage, progress.done, progress.total, progress=progress,
-                       area=one.area, finished=finished)  # fmt: skip
+                finished = (*finished, *of_each)
+            area, shown = of_each[0]
+            yield Work(progress.stage, progress.done, progress.total, progress=shown,
+                       area=area, finished=finished)  # fmt: skip
 
 
 def _beside(one: AreaTask, finished: Sequence[tuple[int, Progress]]) -> Task:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.style import Style
-from stippler.stippling.ground import AreaGround, Ground, PageGround
+from stippler.stippling.area_bleed import area_ground
+from stippler.stippling.ground import Ground, PageGround
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.progress import DONE, Progress, Step
 from stippler.stippling.task import STIPPLE, Task
@@ -52,7 +53,7 @@ class Draft:
         assert reference is not None, "only relaxation does without a reference"
         ground: Ground
         if task.parts_mm:
-            ground = AreaGround(reference, style, task.parts_mm[0])
+            ground = area_ground(reference, style, task.parts_mm[0], bleeds=task.kind == STIPPLE)
         else:
             ground = PageGround(reference, style, with_bleed=task.kind == STIPPLE)
         draft = cls(task, ground, np.empty((0, 2)))
@@ -92,8 +93,8 @@ class Draft:
     def shown(self) -> tuple[Floats, Floats]:
         """Return places and radii of the dots that were made, in pixels, as they are now."""
         if self.radii is None:
-            points = self.raster.trim(self.points, self.n_wanted)
-            return points, self.raster.radii(points)
+            points = self.ground.trimmed(self.points, self.n_wanted)
+            return points, self.ground.after_trim.raster.radii(points)
         return self.points, self.radii
 
     def progress(self, step: Step, watched: bool) -> Progress:
@@ -113,5 +114,6 @@ class Draft:
     def _on_page(
         self, points: Floats, radii: Floats
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
-        position, radius = self.raster.on_page(points, radii)
-        return self.ground.on_page(position), radius
+        ground = self.ground.after_trim
+        position, radius = ground.raster.on_page(points, radii)
+        return ground.on_page(position), radius

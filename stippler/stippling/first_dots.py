@@ -91,7 +91,7 @@ def _trimmed_to(
     best, off, share = np.empty((0, 2)), np.inf, 1.0
     for _ in range(_TRIES):
         points = place(density * np.float32(share)) - raster.bleed
-        missing = 0 if n_wanted is None else n_wanted - len(raster.trim(points, n_wanted))
+        missing = 0 if n_wanted is None else n_wanted - len(draft.ground.trimmed(points, n_wanted))
         if abs(missing) < off:
             best, off = points, abs(missing)
         if not missing or not len(points):

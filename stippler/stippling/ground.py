@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import shapely
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import MAX_DOTS, Style
+from stippler.drawing.style import MAX_DOTS, WALL, Style
 from stippler.kernels.halftone.scan_order import outside_polygon
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.default_number import with_number
@@ -21,10 +21,14 @@ from stippler.stippling.halftone import DROPPED
 from stippler.stippling.halftone_area import edges_of
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
+from stippler.stippling.postprocess import at_edge, even_rim
 from stippler.stippling.style_tone import curves_of, toned
 from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import DotRule
 from stippler.stippling.window import Window
+
+if TYPE_CHECKING:
+    from stippler.stippling.area_bleed import Rim
 
 Floats = NDArray[np.float64]
 Within = tuple[Compartments, NDArray[np.int32]]
@@ -68,6 +72,24 @@ class Ground(Protocol):
         """Return the dots' cells, in pixels, with the ink they ask for; None is the page."""
         ...
 
+    @property
+    def bleeds(self) -> bool:
+        """Whether dots are laid out beyond an edge, and trimmed."""
+        ...
+
+    @property
+    def after_trim(self) -> Ground:
+        """What trimmed dots lie on."""
+        ...
+
+    def trimmed(self, points: Floats, n_wanted: int | None) -> Floats:
+        """Return the dots that are left once the bleed is cut off, in pixels of `after_trim`."""
+        ...
+
+    def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
+        """Even out the ink along edges that bleed; tell which dots have to do with them."""
+        ...
+
 
 class PageGround:
     """The page; with its bleed, unless the dots to come are just those that are there."""
@@ -107,6 +129,25 @@ class PageGround:
         """Return None: the cells are the page's."""
         return None
 
+    @property
+    def bleeds(self) -> bool:
+        """Whether the page has a bleed."""
+        return self.raster.bleed > 0
+
+    @property
+    def after_trim(self) -> Ground:
+        """Return itself."""
+        return self
+
+    def trimmed(self, points: Floats, n_wanted: int | None) -> Floats:
+        """Return the dots of the page."""
+        return self.raster.trim(points, n_wanted)
+
+    def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
+        """Even out the ink along the page's edge."""
+        evened = even_rim(points, self.raster, give)
+        return evened, at_edge(evened, self.raster)
+
 
 class AreaGround:
     """The part of the page that is an area's, on the window of the picture that lies under it.
@@ -117,13 +158,22 @@ class AreaGround:
         Of the whole page; only the window is looked at.
     outline_mm : shapely Polygon or MultiPolygon
         On the page.
+    bleed_mm : float
+        How far around the page the picture goes on.
     """
 
-    def __init__(self, reference: Reference, style: Style, outline_mm: Outline) -> None:
+    rim: Rim | None = None
+    """Where dots may bleed, once they are trimmed."""
+
+    bleeds = False
+
+    def __init__(
+        self, reference: Reference, style: Style, outline_mm: Outline, bleed_mm: float = 0.0
+    ) -> None:
         box, curves = outline_mm.bounds, curves_of(style)
         style = counted(style, outline_mm.area)
         n_box = _number_in_box(style, outline_mm)
-        window = Window.of(reference, box, n_box, *curves)
+        window = Window.of(reference, box, n_box, *curves, bleed_mm=bleed_mm)
         self.origin_mm = window.origin_mm
         self._outline = shapely.transform(outline_mm, lambda xy: xy - window.origin_mm)
         k = _division(window.darkness.shape, n_box)
@@ -135,7 +185,8 @@ class AreaGround:
         self.style = with_number(style, local, page_mm2)
         self.raster = raster_for(local, self.style, bleeds=False)
         x0, y0 = self.origin_mm
-        self._field = replace(PictureField.of(reference, (curves,)), origin_mm=(-x0, -y0))
+        field = PictureField.of(reference, (curves,), bleed_mm=bleed_mm)
+        self._field = replace(field, origin_mm=(-x0, -y0))
         self._parts = Compartments.of(shapely.transform(self._outline, self._to_px))
         self._on_page = outline_mm
         shapely.prepare([self._outline, outline_mm])
@@ -181,6 +232,21 @@ class AreaGround:
         field = replace(self._field, pixel_mm=(w / side, h / side), origin_mm=(x / side, y / side))
         return Tessellation.of(points, list(self._parts.polygons), None, field)
 
+    @property
+    def after_trim(self) -> Ground:
+        """Return itself."""
+        return self
+
+    def trimmed(self, points: Floats, n_wanted: int | None) -> Floats:
+        """Return all dots, those that lie outside brought back."""
+        side = self.raster.pixel_mm
+        return self.inside(self.raster.trim(points, n_wanted) * side) / side
+
+    def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
+        """Even out the ink along the lines that bleed."""
+        assert self.rim is not None, "nothing bleeds"
+        return self.rim.evened(self, points, give)
+
 
 def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> PageRaster:
     """Prepare the raster that a style lays its dots out on."""
@@ -189,7 +255,11 @@ def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> Pa
         reference,
         style.n_dots,
         style.size_range_mm,
-        bleeds=bleeds and style.weighted and style.is_relaxed and not by_region,
+        bleeds=bleeds
+        and style.weighted
+        and style.is_relaxed
+        and not by_region
+        and style.border != WALL,
         faintest=DROPPED if by_region else None,
     )
     if style.is_grid and style.n_dots is not None and style.size_range_mm is None:

@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 from stippler.kernels.tone.union_share import shares_of_union
 from stippler.stippling.draft import Draft, Floats
 from stippler.stippling.page_raster import PageRaster
-from stippler.stippling.postprocess import at_edge, even_rim, part_close
+from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
@@ -26,9 +26,12 @@ _ROUNDS = 4
 
 def trim(draft: Draft, watched: bool) -> Iterator[Step]:
     """Leave out the dots of the bleed; who lies off the ground comes back to it."""
-    points = draft.raster.trim(draft.points, draft.n_wanted)
-    inside = draft.ground.inside(points * draft.raster.pixel_mm) / draft.raster.pixel_mm
-    draft.points = inside if draft.task.parts_mm else points
+    before, after = draft.ground, draft.ground.after_trim
+    draft.points = before.trimmed(draft.points, draft.n_wanted)
+    if after is not before:
+        shift = np.array(before.origin_mm) - np.array(after.origin_mm)
+        stand = after.inside(draft.stand * before.raster.pixel_mm + shift)
+        draft.stand, draft.ground = stand / after.raster.pixel_mm, after
     yield from ()
 
 
@@ -47,12 +50,12 @@ def part(draft: Draft, watched: bool) -> Iterator[Step]:
 
 
 def rim(draft: Draft, watched: bool) -> Iterator[Step]:
-    """Even out the ink along the edge of a page that bleeds."""
-    raster = draft.raster
+    """Even out the ink along edges that bleed: the page's, or an area's."""
     for k, give in enumerate(_GIVES):
-        draft.points = even_rim(draft.points, raster, give)
+        draft.points, beside = draft.ground.rim_evened(draft.points, give)
         yield _rim_step(k + 0.5)
-        draft.points = part_close(draft.points, raster, at_edge(draft.points, raster))
+        within = draft.ground.within(draft.points)
+        draft.points = part_close(draft.points, draft.raster, beside, within)
         yield _rim_step(k + 1.0)
 
 

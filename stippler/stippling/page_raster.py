@@ -24,9 +24,9 @@ from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
 from stippler.stippling.tone import DotRule, rule_for
 from stippler.stippling.window import Window
 
-_BLEED = 3.0  # mean spacings
-_LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
-_MIN_DOTS = 500  # below this a bleed is not worth it
+BLEED_SPACINGS = 3.0  # mean spacings
+LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
+FEWEST_WITH_BLEED = 500  # below this a bleed is not worth it
 _LEVELS = 65_535
 _MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
 _FARTHEST = 2.0  # radii beyond the edge from which a dot is drawn back to it, at most
@@ -84,9 +84,9 @@ class PageRaster:
             size_px = (size_range_mm[0] / pixel_mm, size_range_mm[1] / pixel_mm)
         bleed = 0
         spacing = math.sqrt(darkness.size / guess)
-        wide = min(darkness.shape) >= _LEAST_WIDTH * spacing
-        if bleeds and wide and guess >= _MIN_DOTS and _border(darkness).any():
-            bleed = math.ceil(_BLEED * spacing)
+        wide = min(darkness.shape) >= LEAST_WIDTH * spacing
+        if bleeds and wide and guess >= FEWEST_WITH_BLEED and _border(darkness).any():
+            bleed = math.ceil(BLEED_SPACINGS * spacing)
         border = _border(darkness) if bleed else darkness[0, :0]
         rule = rule_for(darkness, n_dots, size_px, border, faintest=faintest)
         share = _share_that_fits(rule, darkness, bleed, guess)
@@ -254,7 +254,7 @@ def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:
 def _number_for(reference: Reference, size_range_mm: tuple[float, float] | None) -> int:
     """Return how many dots of these sizes a reference takes, about."""
     if size_range_mm is None:
-        return _MIN_DOTS
+        return FEWEST_WITH_BLEED
     mean_area = math.pi * (0.5 * (size_range_mm[0] + size_range_mm[1])) ** 2
     ink = float(reference.darkness.mean(dtype=np.float64))
     return max(1, int(ink * reference.width_mm * reference.height_mm / mean_area))

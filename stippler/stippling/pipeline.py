@@ -72,7 +72,7 @@ def stages_of(draft: Draft) -> list[Stage]:
         (part, by_tone and style.is_relaxed and style.weighted
          and task.n_done < style.iterations),
         (rim, by_tone and style.weighted and style.iterations > 0 and is_new
-         and draft.raster.bleed > 0),
+         and draft.ground.bleeds),
         (jitter, is_new and style.jitter > 0.0),
         (onto_ink, True),
         (radii, by_tone),

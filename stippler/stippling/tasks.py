@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.geometry import MultiPolygon
 
 from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
+from stippler.drawing.style import THROUGH, Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.part_of_area import FEW, part_for_dots
+from stippler.stippling.part_of_area import FEW, part_for_dots, pattern_of
+from stippler.stippling.progress import Progress
 from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
 
@@ -89,17 +91,72 @@ def _cut(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AreaTask:
-    """The task of stippling one area, and which areas the neighbours of its dots are in."""
+    """The task of stippling an area, or several that see through their borders.
 
-    area: int
+    Attributes
+    ----------
+    areas : tuple of int
+    task : Task
+    neighbour_area : (m,) int32
+        Which areas the neighbours of its dots are in.
+    partition : Partition
+        Says whose the dots of several areas are.
+    """
+
+    areas: tuple[int, ...]
     task: Task
     neighbour_area: NDArray[np.int32]
+    partition: Partition
+
+    def of_each(self, made: Progress) -> tuple[tuple[int, Progress], ...]:
+        """Return the dots of each area; what all fall short of is told with the first."""
+        if len(self.areas) == 1:
+            return ((self.areas[0], made),)
+        owner = self.partition.area_at(made.position_mm)
+        owner[~np.isin(owner, self.areas)] = self.areas[0]
+        found = []
+        for k in self.areas:
+            mine = owner == k
+            position, radius = made.position_mm[mine], made.radius_mm[mine]
+            position.flags.writeable = radius.flags.writeable = False
+            lack = made.shortfall if k == self.areas[0] else None
+            one = replace(made, position_mm=position, radius_mm=radius, shortfall=lack)
+            found.append((k, one))
+        return tuple(found)
+
+
+def joined(drawing: Drawing, areas: Sequence[int], partition: Partition) -> list[tuple[int, ...]]:
+    """Return which of some areas are drawn as one, each group where its first area is.
+
+    Those of one style are that touch along a line and see through their borders; an area under
+    a pattern is drawn by itself.
+    """
+    group = {k: k for k in areas}
+    seeing = [k for k in areas if k in drawing.areas and drawing.style_of(k).border == THROUGH]
+    seeing = [k for k in seeing if pattern_of(drawing, k) is None]
+    for i, k in enumerate(seeing):
+        for other in seeing[i + 1 :]:
+            if drawing.areas[k].style != drawing.areas[other].style:
+                continue
+            shared = shapely.intersection(partition.part_of(k), partition.part_of(other))
+            if shared.length > 0.0 and group[k] != group[other]:
+                old, new = group[other], group[k]
+                group = {j: new if g == old else g for j, g in group.items()}
+    found: dict[int, list[int]] = {}
+    for k in areas:
+        found.setdefault(group[k], []).append(k)
+    return [tuple(ids) for ids in found.values()]
 
 
 def stippling(
-    drawing: Drawing, area: int, partition: Partition | None = None, near: Rows | None = None
+    drawing: Drawing,
+    area: int | tuple[int, ...],
+    partition: Partition | None = None,
+    near: Rows | None = None,
 ) -> AreaTask:
     """Return the task of stippling an area of a drawing anew, in its style.
+
+    Several, as `joined` tells them, are one outline; the style is that of the first.
 
     Its fixed dots stay, and new ones keep clear of those beyond its border. A number of dots is
     shared by all areas of the style, by their ink.
@@ -118,33 +175,44 @@ def stippling(
     GeometryError
         If nothing of the page is the area's.
     """
-    if area not in drawing.areas:
-        raise ParameterError(f"there is no area {area}", "area", _known(drawing))
+    areas = (area,) if isinstance(area, int) else area
+    for k in areas:
+        if k not in drawing.areas:
+            raise ParameterError(f"there is no area {k}", "area", _known(drawing))
     reference = drawing.reference
     if reference is None:
         raise ParameterError("there is no picture to stipple from", "area", "fill it with dots")
     partition = partition or Partition(drawing.outlines())
-    part = partition.part_of(area)
+    part = part_of_all(partition, areas)
     if part.is_empty:
-        raise GeometryError("lies under others", f"area {area}", "give it room of its own")
+        raise GeometryError("lies under others", f"area {areas[0]}", "give it room of its own")
     dots = drawing.dots
     if near is None:
         x0, y0, x1, y1 = box_around(part)
         x, y = dots.position_mm.T
         near = np.flatnonzero((x >= x0) & (x <= x1) & (y >= y0) & (y <= y1))
-    mine = dots.area[near] == area
+    mine = np.isin(dots.area[near], areas)
     fixed, others = near[mine & dots.fixed[near]], near[~mine]
     standing = None
     if len(fixed):
         standing = Standing(dots.position_mm[fixed], dots.radius_mm[fixed])
-    style = _with_own_number(drawing, partition, area, part, reference)
+    style = _with_own_number(drawing, partition, areas, part, reference)
     whole = drawing.page.width_mm * drawing.page.height_mm
-    cut = part_for_dots(drawing, area, part)
-    is_page = area == PAGE_AREA and cut is part and part.area >= (1.0 - _WHOLE) * whole
+    cut = part_for_dots(drawing, areas[0], part)
+    is_page = PAGE_AREA in areas and cut is part and part.area >= (1.0 - _WHOLE) * whole
     parts = () if is_page else (cut,)
     task = Task(style, reference, parts_mm=parts, standing=standing,
                 neighbours_mm=dots.position_mm[others])  # fmt: skip
-    return AreaTask(area, task, dots.area[others])
+    return AreaTask(areas, task, dots.area[others], partition)
+
+
+def part_of_all(partition: Partition, areas: Sequence[int]) -> Outline:
+    """Return what several areas own together."""
+    if len(areas) == 1:
+        return partition.part_of(areas[0])
+    parts = shapely.get_parts(shapely.union_all([partition.part_of(k) for k in areas]))
+    polygons = parts[shapely.get_type_id(parts) == 3]
+    return polygons[0] if len(polygons) == 1 else MultiPolygon(polygons.tolist())
 
 
 def box_around(part: Outline) -> tuple[float, float, float, float]:
@@ -159,18 +227,21 @@ def _known(drawing: Drawing) -> str:
 
 
 def _with_own_number(
-    drawing: Drawing, partition: Partition, area: int, part: Outline, reference: Reference
+    drawing: Drawing,
+    partition: Partition,
+    areas: tuple[int, ...],
+    part: Outline,
+    reference: Reference,
 ) -> Style:
-    """Return an area's style with its own share of a number that several areas have together."""
-    i = drawing.areas[area].style
+    """Return areas' style with their share of a number that several areas have together."""
+    i = drawing.areas[areas[0]].style
     style = drawing.styles[i]
-    sharing = [k for k, one in drawing.areas.items() if one.style == i]
-    if style.n_dots is None or len(sharing) == 1:
+    others = [k for k, one in drawing.areas.items() if one.style == i and k not in areas]
+    if style.n_dots is None or not others:
         return style
     page = (0.0, 0.0, drawing.page.width_mm, drawing.page.height_mm)
-    others = [k for k in sharing if k != area]
     rest = _ink(partition, reference, page, _COARSE, others)
-    own = _ink(partition, reference, part.bounds, _FINE, [area])
+    own = _ink(partition, reference, part.bounds, _FINE, list(areas))
     share = own / (own + rest) if own > 0.0 else 0.0
     return replace(style, n_dots=max(round(style.n_dots * share), 1))
 

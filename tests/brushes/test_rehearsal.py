@@ -36,7 +36,7 @@ session, painting = app.session, app.editor.painting
 def at(x_mm, y_mm):
     editor = app.editor
     x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
-    left, top = editor.pointer._origin_px
+    left, top = editor.pointer.origin_px
     return float(x + left), float(y + top)
 
 def variants(tool):

@@ -66,7 +66,7 @@ def test_hidden_and_solo_areas_on_the_screen(desk_of_areas):
     def ink():
         host.leave()
         host.settle()
-        view, origin = desk.app.editor.view, desk.app.editor.pointer._origin_px
+        view, origin = desk.app.editor.view, desk.app.editor.pointer.origin_px
         shot = host.screenshot().astype(int)
         found = []
         for x0, x1 in ((12, 48), (52, 88)):

@@ -213,7 +213,7 @@ def test_controls_have_one_size_in_units_on_every_screen(
         (x, y) = app.session.document.dots.position_mm[0]
         view = app.editor.view
         at = view.camera.page_to_screen((x, y), view.size_px)
-        origin = app.editor.pointer._origin_px
+        origin = app.editor.pointer.origin_px
         assert np.allclose((at + origin) / ratio, (650.0, 330.0), atol=0.6)
         host.key("q")
         host.settle()

@@ -36,7 +36,7 @@ def opened(desk, picture: Path):
 def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
     editor = desk.app.editor
     x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
-    origin = editor.pointer._origin_px
+    origin = editor.pointer.origin_px
     return float(x + origin[0]), float(y + origin[1])
 
 

@@ -37,7 +37,7 @@ def test_a_pattern_is_picked_filled_bent_and_undone(desk, tmp_path):
 
     def on_screen(x, y):
         px = editor.view.camera.page_to_screen([(x, y)], editor.view.size_px)[0]
-        left, top = editor.pointer._origin_px
+        left, top = editor.pointer.origin_px
         return float(px[0]) + left, float(px[1]) + top
 
     before = document.dots.position_mm.copy()

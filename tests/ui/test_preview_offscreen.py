@@ -44,7 +44,7 @@ def same(a: Dots, b: Dots) -> bool:
 def on_screen(desk, at_mm: tuple[float, float]) -> tuple[float, float]:
     editor = desk.app.editor
     x, y = editor.view.camera.page_to_screen(at_mm, editor.view.size_px)
-    origin = editor.pointer._origin_px
+    origin = editor.pointer.origin_px
     return float(x + origin[0]), float(y + origin[1])
 
 
@@ -69,7 +69,7 @@ def page_of(desk) -> np.ndarray:
     i, j = np.mgrid[: shot.shape[0], : shot.shape[1]]
     tip = 16.0 * desk.app.editor.view.camera.px_per_mm
     ring = np.abs(np.hypot(j + 0.5 - x, i + 0.5 - y) - tip) < 4
-    left, top = (round(v) for v in desk.app.editor.pointer._origin_px)
+    left, top = (round(v) for v in desk.app.editor.pointer.origin_px)
     shot[ring] = 0
     w, h = desk.app.editor.view.size_px
     return shot[top : top + h, left : left + w]

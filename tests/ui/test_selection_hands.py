@@ -88,7 +88,7 @@ def page(desk):
 
 
 def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
-    view, origin = desk.app.editor.view, desk.app.editor.pointer._origin_px
+    view, origin = desk.app.editor.view, desk.app.editor.pointer.origin_px
     x, y = view.camera.page_to_screen((x_mm, y_mm), view.size_px)
     return float(x + origin[0]), float(y + origin[1])
 

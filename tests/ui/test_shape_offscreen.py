@@ -37,7 +37,7 @@ def same(a: Dots, b: Dots) -> bool:
 
 def page_of(desk) -> np.ndarray:
     desk.host.settle()
-    left, top = (round(v) for v in desk.app.editor.pointer._origin_px)
+    left, top = (round(v) for v in desk.app.editor.pointer.origin_px)
     w, h = desk.app.editor.view.size_px
     return desk.host.screenshot().astype(int)[top : top + h, left : left + w]
 

@@ -35,7 +35,7 @@ def opened(desk, picture: Path):
 def on_screen(desk, x_mm: float, y_mm: float) -> tuple[float, float]:
     editor = desk.app.editor
     x, y = editor.view.camera.page_to_screen((x_mm, y_mm), editor.view.size_px)
-    origin = editor.pointer._origin_px
+    origin = editor.pointer.origin_px
     return float(x + origin[0]), float(y + origin[1])
 
 
@@ -71,7 +71,7 @@ def test_the_panel_turns_flips_and_sets_upright(opened) -> None:
 
 def test_shift_and_the_middle_button_turn_freely(opened) -> None:
     host, editor = opened.host, opened.app.editor
-    middle = np.array(editor.pointer._origin_px) + np.array(editor.view.size_px) / 2
+    middle = np.array(editor.pointer.origin_px) + np.array(editor.view.size_px) / 2
     x, y = (float(v) for v in middle)
     host.drag((x + 200, y), (x, y + 200), "middle", shift=True)
     assert math.degrees(editor.view.camera.rotation_rad) == pytest.approx(90)
@@ -109,7 +109,7 @@ def test_a_rectangle_selects_what_it_shows_on_a_turned_page(opened) -> None:
     chosen = editor.painting.toolbox.selection.ids
     document = opened.app.session.document
     at = editor.view.camera.page_to_screen(document.dots.position_mm, editor.view.size_px)
-    at += editor.pointer._origin_px
+    at += editor.pointer.origin_px
     inside = ((at > a) & (at < b)).all(axis=1)
     assert 0 < inside.sum() < len(at) / 2
     assert set(chosen) == set(document.dots.id[inside])

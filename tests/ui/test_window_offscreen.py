@@ -54,7 +54,7 @@ def test_a_dropped_picture_becomes_dots_that_are_seen(desk, picture: Path) -> No
     x, y = (
         round(v)
         for v in view.camera.page_to_screen((60.0, 45.0), view.size_px)
-        + np.array(desk.app.editor.pointer._origin_px)
+        + np.array(desk.app.editor.pointer.origin_px)
     )
     reach = round(20 * view.camera.px_per_mm)
     assert ink(shot, x - reach, y - reach, x + reach, y + reach) > 0.1
@@ -119,7 +119,7 @@ def test_pan_zoom_and_fit(desk, picture: Path) -> None:
     host, view = desk.host, desk.app.editor.view
     fitted = view.camera
     x, y = MIDDLE_OF_CANVAS
-    origin = desk.app.editor.pointer._origin_px
+    origin = desk.app.editor.pointer.origin_px
     place = view.at(x - origin[0], y - origin[1])
     host.scroll(5, MIDDLE_OF_CANVAS)
     host.until(lambda: not view.moving, "the zoom")

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,6 @@ from stippler.ui.window.scripted_host import Host
 pytestmark = pytest.mark.window
 
 SIZE = (1280, 800)
-CANVAS = (366, 24, 1280, 771)
 _PATIENCE_S = 60.0
 
 
@@ -57,9 +57,17 @@ def display() -> Iterator[str]:
         server.wait()
 
 
+@dataclass(frozen=True)
+class Layout:
+    """Where the controls are while a picture is open, and the canvas."""
+
+    places: dict[str, tuple[float, float]]
+    canvas: tuple[int, int, int, int]
+
+
 @pytest.fixture(scope="module")
-def places(picture: Path) -> Iterator[dict[str, tuple[float, float]]]:
-    """Where the controls are while a picture is open, in the same editor without a display."""
+def layout(kernels: None, picture: Path) -> Layout:
+    """Ask the same editor without a display."""
     style = Style(n_dots=200, iterations=3)
     app = App(style, tone="linear", width_mm=148.0, size=SIZE, offscreen=True)
     try:
@@ -67,9 +75,15 @@ def places(picture: Path) -> Iterator[dict[str, tuple[float, float]]]:
         host.drop(picture)
         host.until(lambda: app.session.phase == "done", "the drawing")
         host.settle()
-        yield {label: host.place(label) for label in app.editor.widgets.marks}
+        marks = app.editor.widgets.marks
+        return Layout({label: host.place(label) for label in marks}, host.canvas())
     finally:
         app.close()
+
+
+@pytest.fixture(scope="module")
+def places(layout: Layout) -> dict[str, tuple[float, float]]:
+    return layout.places
 
 
 class _Message(ctypes.Structure):
@@ -90,8 +104,8 @@ class _Message(ctypes.Structure):
 class Desk:
     """The editor as a process of its own, and hands on it."""
 
-    def __init__(self, display: str, settings: Path, *arguments: str) -> None:
-        self._display = display
+    def __init__(self, display: str, layout: Layout, settings: Path, *arguments: str) -> None:
+        self._display, self.canvas = display, layout.canvas
         self._env = {**os.environ, "DISPLAY": display}
         self._env.pop("WAYLAND_DISPLAY", None)
         self._env.pop("STIPPLER_SCALE", None)
@@ -117,8 +131,12 @@ class Desk:
     def shot(self) -> np.ndarray:
         return np.asarray(ImageGrab.grab(xdisplay=self._display).convert("RGB"))
 
+    def middle(self) -> tuple[int, int]:
+        x0, y0, x1, y1 = self.canvas
+        return (x0 + x1) // 2, (y0 + y1) // 2
+
     def ink(self) -> np.ndarray:
-        x0, y0, x1, y1 = CANVAS
+        x0, y0, x1, y1 = self.canvas
         return self.shot()[y0:y1, x0:x1].mean(axis=2) < 100
 
     def has(self, place: tuple[float, float], colour: Colour) -> bool:
@@ -163,11 +181,11 @@ class Desk:
 
 
 @pytest.fixture
-def start(kernels: None, display: str, tmp_path: Path) -> Iterator[Callable[..., Desk]]:
+def start(layout: Layout, display: str, tmp_path: Path) -> Iterator[Callable[..., Desk]]:
     desks: list[Desk] = []
 
     def begin(*arguments: str) -> Desk:
-        desks.append(Desk(display, tmp_path / "settings", *arguments))
+        desks.append(Desk(display, layout, tmp_path / "settings", *arguments))
         return desks[-1]
 
     yield begin
@@ -183,7 +201,7 @@ def test_wheel_and_middle_button_move_the_page(
     desk = start(str(picture), "--dots", "200", "--iterations", "3", "--tone", "linear")
     until(lambda: desk.title() == "disc.png – Stippler", "the title")
     until(lambda: desk.has(places["Start"], LIGHT.accent), "the end of the work")
-    middle = ((CANVAS[0] + CANVAS[2]) // 2, (CANVAS[1] + CANVAS[3]) // 2)
+    middle = desk.middle()
     fitted = desk.ink().sum()
     assert fitted > 1000
     desk.xdotool("mousemove", *middle)
@@ -232,7 +250,7 @@ def test_the_close_button_asks_when_something_was_painted(
     until(lambda: desk.title() == "disc.png – Stippler", "the title")
     until(lambda: desk.has(places["Start"], LIGHT.accent), "the end of the work")
     desk.focus()
-    desk.xdotool("mousemove", (CANVAS[0] + CANVAS[2]) // 2, (CANVAS[1] + CANVAS[3]) // 2)
+    desk.xdotool("mousemove", *desk.middle())
     desk.xdotool("key", "e")
     desk.xdotool("click", 1)
     until(lambda: desk.title() == "disc.png* – Stippler", "the mark of a change")
@@ -303,7 +321,7 @@ def test_bursts_from_the_canvas_to_a_panel_and_back(
     until(lambda: desk.title() == "disc.png – Stippler", "the title")
     until(lambda: desk.has(places["Start"], LIGHT.accent), "the end of the work")
     desk.focus()
-    corner = (CANVAS[2] - 250, CANVAS[1] + 150)  # white paper
+    corner = (desk.canvas[2] - 250, desk.canvas[1] + 150)  # white paper
     desk.xdotool("key", "a")
     before = desk.ink().sum()
     burst: list[object] = []
@@ -318,7 +336,7 @@ def test_bursts_from_the_canvas_to_a_panel_and_back(
     desk.xdotool("mousemove", corner[0] + 100, corner[1] + 20)
 
     def dots() -> int:
-        x, y = corner[0] - CANVAS[0], corner[1] - CANVAS[1]
+        x, y = corner[0] - desk.canvas[0], corner[1] - desk.canvas[1]
         column = desk.ink()[:, x - 3 : x + 4].any(axis=1)
         return sum(bool(column[y + 40 * k - 6 : y + 40 * k + 7].any()) for k in range(3))
 

@@ -65,9 +65,9 @@ def _work_commands(parts: Parts) -> Iterator[Command]:
         ("fill", "Fill areas", "Fill", "adds dots to each chosen area.", acts.fill, (), can_work),
         ("clear", "Clear areas", "Clear", "removes the dots of the chosen areas, but fixed ones.",
          acts.clear, (), can_work),
-        ("enlarge", "Enlarge the dots of areas", "Larger", "by 10 percent.",
+        ("enlarge", "Enlarge the dots of areas", "Larger", "by 10 %.",
          lambda: acts.resize(110.0), (), can_work),
-        ("reduce", "Reduce the dots of areas", "Smaller", "by 10 percent.",
+        ("reduce", "Reduce the dots of areas", "Smaller", "by 10 %.",
          lambda: acts.resize(100.0 / 1.1), (), can_work),
     ):  # fmt: skip
         yield Command(f"area.{name}", label, run, keys, can=can, short=short, tip=tip)

@@ -92,7 +92,8 @@ def work_commands(parts: Parts) -> Iterator[Command]:
     yield Command("work.fill", "Fill the page", session.fill, can=lambda: session.paintable,
                   tip="adds dots by the values under Drawing; one step to undo.")  # fmt: skip
     yield Command("work.style", "Choose a style", lambda: parts.popups.styles.ask())
-    yield Command("work.reset", "Default values", reset)
+    yield Command("work.reset", "Default values", reset,
+                  tip="in the panel Drawing; dots change with the next Start.")  # fmt: skip
     yield Command("work.scale", "Scale the drawing", lambda: parts.popups.scale.ask(),
                   can=lambda: session.paintable,
                   tip="to another size or number of dots, its tone kept.")  # fmt: skip

@@ -16,7 +16,7 @@ def line_commands(parts: Parts) -> Iterator[Command]:
         return lines.document is not None and bool(lines.chosen)
 
     yield Command("line.row", "Lay the row", lines.lay_row, can=lambda: lines.can_row, short="Row",
-                  tip="lays the row that the panel Lines describes.")  # fmt: skip
+                  tip="lays a row of dots by the values of the tool Line.")  # fmt: skip
     for name, label, short, tip, run in (
         ("line_up", "Line up dots", "Line up", "dots within reach come to lie on the line.",
          lines.line_up),

@@ -43,13 +43,13 @@ def selection_commands(parts: Parts) -> Iterator[Command]:
          lambda: painting.fix(True), ()),
         ("free", "Free the selection", "Free dots", "they may move again.",
          lambda: painting.fix(False), ()),
-        ("relax", "Relax the selection", "Relax dots", "one step of relaxation.",
+        ("relax", "Relax the selection", "Relax dots", "evens out their spacing by one step.",
          painting.relax, ()),
         ("jitter", "Jitter the selection", "Jitter dots",
          "by up to a fifth of their mean distance.", painting.jitter, ()),
-        ("enlarge", "Enlarge the selection's dots", "Larger", "by 10 percent.",
+        ("enlarge", "Enlarge the selection's dots", "Larger", "by 10 %.",
          lambda: painting.resize(_RESIZE_PERCENT), ()),
-        ("reduce", "Reduce the selection's dots", "Smaller", "by 10 percent.",
+        ("reduce", "Reduce the selection's dots", "Smaller", "by 10 %.",
          lambda: painting.resize(-_RESIZE_PERCENT), ()),
     ):  # fmt: skip
         yield Command(f"selection.{name}", label, run, keys, can=has_some, short=short, tip=tip)

@@ -44,7 +44,7 @@ def view_commands(parts: Parts) -> Iterator[Command]:
     def scale_text(factor: float) -> None:
         scale = (look.scale or window.scale) * factor
         look.scale = round(min(max(scale, SCALES[0]), SCALES[1]), 2)
-        session.messages.say(f"text and controls at {look.scale:.0%}")
+        session.messages.say(f"text and controls at {100 * look.scale:.0f} %")
 
     yield Command("view.fit", "Fit", view.fit, (Key("f"), Key("home")))
     yield Command("view.print_size", "Print size", print_size, (Key("1"),))

@@ -8,6 +8,7 @@ from stippler.drawing.area import PAGE_AREA, Area
 from stippler.editor.area_acts import AreaActs, counts
 from stippler.editor.commands import Commands
 from stippler.editor.events import Mods
+from stippler.ui.panels.area_border import draw_border_policy
 from stippler.ui.panels.area_work import buttons, draw_area_work
 from stippler.ui.widgets import Widgets
 
@@ -190,11 +191,14 @@ class AreasPanel:
     def _draw_styles(self, widgets: Widgets) -> None:
         """Offer the drawing's styles for the chosen areas."""
         document, ids = self._acts.document, list(self._acts.choice.ids)
-        if document is None or not ids or len(document.drawing.styles) < 2:
+        if document is None:
             return
         styles = document.drawing.styles
         ids = [k for k in ids if k in document.drawing.areas]
         if not ids:
+            return
+        draw_border_policy(widgets, self._acts, document.drawing, ids)
+        if len(styles) < 2:
             return
         keys = sorted(styles)
         names = [styles[i].name or f"Style {i}" for i in keys]

@@ -24,7 +24,7 @@ def draw_patterns(
     area, laid = patterns.area, patterns.laid
     name = document.drawing.areas[area].name
     over = laid[1].polygons.name if laid else "no pattern"
-    widgets.heading(f"{name}: {over}")
+    widgets.heading(f"{name[:1].upper()}{name[1:]}: {over}")
     if laid is None:
         patterns.size_mm = max(
             widgets.length("Size", patterns.size_mm, "Of one copy of the set."), 0.5

@@ -130,7 +130,10 @@ class PreferencesWindow:
 
     def _draw_scale(self, widgets: Widgets) -> None:
         look = self._kept.look
-        options = [f"Automatic ({self._display_scale():.0%})", *(f"{p} %" for p in _PERCENT)]
+        options = [
+            f"Automatic ({100 * self._display_scale():.0f} %)",
+            *(f"{p} %" for p in _PERCENT),
+        ]
         now = round(100 * look.scale)
         if now and now not in _PERCENT:
             options.append(f"{now} %")

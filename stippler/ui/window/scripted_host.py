@@ -194,6 +194,11 @@ class Host:
         """Return whether there is a control of that label."""
         return label in self._editor.widgets.marks
 
+    def canvas(self) -> tuple[int, int, int, int]:
+        """Return where the canvas is in the window, in pixels: left, top, right, bottom."""
+        (x, y), (width, height) = self._editor.pointer.origin_px, self._editor.view.size_px
+        return round(x), round(y), round(x) + width, round(y) + height
+
     def said(self) -> str:
         """Return the last message."""
         log = self._editor.session.messages.log

@@ -1,0 +1,235 @@
+"""How dots meet the borders of their area.
+
+*Wall*: dots see nothing beyond, and the area is solved up to the line. *Bleed*: the picture runs on
+beyond the line, so dots are laid out past it and trimmed, as at the edge of a page. What areas of
+like style see *through* is no border at all: they are one outline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, MultiPolygon, Polygon
+
+from stippler.drawing.style import BLEED, WALL
+from stippler.kernels.tone.edge_ink import even_rim
+from stippler.stippling.halftone_area import edges_of
+from stippler.stippling.tone import DotRule
+
+_FARTHEST = 2.0  # radii beyond a line from which a dot is drawn back to it, at most
+_INSET = 1e-6  # of a radius; how far within the line a dot lies that was drawn back
+_NEAR = 1.6  # radii; dots so near a line may come to touch it
+_LINE = 0.15  # radii; how far inside it the ink is compared
+_SAMPLES = 4.0  # of the darkness along a line for each of the smallest radii
+_ON_EDGE_MM = 2e-3  # a border so near the page's edge lies on it
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.intp]
+Outline: TypeAlias = Polygon | MultiPolygon
+Side: TypeAlias = tuple[int, bool, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Borders:
+    """An area's outline, and over which lines of it the picture runs on; all others are walls.
+
+    Attributes
+    ----------
+    outline : polygon, mm
+    bleeding : tuple of LineString, mm
+        Those lines, joined end to end.
+    sides : tuple of (axis, whether it is the far one, place in mm)
+        The sides of the page that they lie on; none if all of the outline bleeds.
+    """
+
+    outline: Outline
+    bleeding: tuple[LineString, ...] = ()
+    sides: tuple[Side, ...] = ()
+
+    @classmethod
+    def of(cls, outline: Outline, policy: str, size_mm: tuple[float, float]) -> Borders:
+        """Take an area on a page by the policy of its style."""
+        if policy == WALL:
+            return cls(outline)
+        edges = edges_of(outline)
+        if policy == BLEED:
+            return cls(outline, _joined(edges))
+        sides, found = list[Side](), np.zeros(len(edges), np.bool_)
+        for axis in (0, 1):
+            for is_far, at in ((False, 0.0), (True, size_mm[axis])):
+                off = np.abs(edges[:, [axis, axis + 2]] - at).max(axis=1)
+                if (off < _ON_EDGE_MM).any():
+                    found |= off < _ON_EDGE_MM
+                    sides.append((axis, is_far, outline.bounds[axis + 2 * is_far]))
+        return cls(outline, _joined(edges[found]), tuple(sides))
+
+    def grown(self, width_mm: float) -> Outline:
+        """Return the outline with a strip of this width beyond what bleeds.
+
+        Beyond the page's edge it is mirrored, as the picture is. Dots are laid out and relaxed in
+        it; `trimmed` takes those of the strip away again.
+        """
+        if not self.bleeding:
+            return self.outline
+        if not self.sides:
+            return _polygons(shapely.buffer(self.outline, width_mm, join_style="mitre"))
+        shape: shapely.Geometry = self.outline
+        for axis, is_far, at in self.sides:
+            box = list(shape.bounds)
+            box[axis + 2 * (not is_far)] = at - width_mm if is_far else at + width_mm
+            strip = shapely.intersection(shape, shapely.box(*box))
+            sign, shift = np.ones(2), np.zeros(2)
+            sign[axis], shift[axis] = -1.0, 2.0 * at
+            beyond = shapely.transform(strip, lambda xy, s=sign, t=shift: s * xy + t)
+            shape = shapely.union(shape, beyond)
+        return _polygons(shape)
+
+    def trimmed(
+        self, position_mm: Floats, radius_mm: Floats, n_wanted: int | None = None
+    ) -> tuple[Rows, Floats]:
+        """Return which dots are the area's, and their places: none lies beyond its outline.
+
+        Those that reach in over a line that bleeds are drawn back to it; how far they have to reach
+        is chosen so that there are `n_wanted`, as nearly as that goes.
+        """
+        inside = shapely.intersects_xy(self.outline, position_mm[:, 0], position_mm[:, 1])
+        kept, beyond = np.flatnonzero(inside), np.flatnonzero(~inside)
+        at = np.array(position_mm, np.float64)
+        line = shapely.multilinestrings(self.bleeding)
+        if n_wanted is not None and len(kept) > n_wanted:
+            inwards = shapely.distance(line, shapely.points(at[kept]))
+            return np.sort(kept[np.argsort(inwards, kind="stable")[len(kept) - n_wanted :]]), at
+        if len(beyond):
+            way = shapely.shortest_line(line, shapely.points(at[beyond]))
+            foot = shapely.get_coordinates(way)[::2]
+            depth = shapely.length(way) / radius_mm[beyond]
+            rank = np.argsort(depth, kind="stable")
+            n = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH))
+            if n_wanted is not None:
+                n = int(np.searchsorted(depth[rank], _FARTHEST))
+                n = min(max(n_wanted - len(kept), 0), n)
+            back = rank[:n]
+            at[beyond[back]] = _inside_of(
+                self.outline, foot[back], _INSET * radius_mm[beyond[back]]
+            )
+            kept = np.sort(np.concatenate([kept, beyond[back]]))
+        return kept, at
+
+    def near(self, position_mm: Floats, reach_mm: float) -> NDArray[np.bool_]:
+        """Tell which dots lie so near a line that bleeds."""
+        found = np.zeros(len(position_mm), np.bool_)
+        tree = shapely.STRtree(shapely.points(position_mm))
+        for line in self.bleeding:
+            found[tree.query(line, predicate="dwithin", distance=reach_mm)] = True
+        return found
+
+    def rim_evened(
+        self,
+        position_mm: Floats,
+        radius_mm: Floats,
+        darkness_at: Callable[[Floats], Floats],
+        give: float,
+    ) -> Floats:
+        """Move dots across lines that bleed until the ink along them meets the tone, end to end.
+
+        Parameters
+        ----------
+        position_mm : (n, 2) float64
+            Trimmed; not modified.
+        radius_mm : (n,) float64
+        darkness_at : callable
+            Of points (k, 2) of the page, mm.
+        give : float
+            How far a dot may move, in its radius.
+        """
+        at = np.array(position_mm, np.float64)
+        if not len(at):
+            return at
+        tree = shapely.STRtree(shapely.points(at))
+        reach = _NEAR * float(radius_mm.max())
+        for line in self.bleeding:
+            near = np.sort(tree.query(line, predicate="dwithin", distance=reach))
+            at[near] = self._evened(line, at[near], radius_mm[near], darkness_at, give)
+        return at
+
+    def _evened(
+        self,
+        line: LineString,
+        at: Floats,
+        radius: Floats,
+        darkness_at: Callable[[Floats], Floats],
+        give: float,
+    ) -> Floats:
+        points = shapely.points(at)
+        inwards = shapely.distance(line, points)
+        along = shapely.line_locate_point(line, points)
+        which = np.flatnonzero(inwards < _NEAR * radius)
+        if not len(which):
+            return at
+        which = which[np.argsort(along[which], kind="stable")]
+        n = max(int(_SAMPLES * line.length / float(radius[which].min())), 1)
+        unit = line.length / n
+        edge = darkness_at(along_line(line, n))
+        asked = np.concatenate(([0.0], np.cumsum(edge, dtype=np.float64)))
+        deep = inwards[which] / unit
+        r = radius[which] / unit
+        even_rim(along[which] / unit, deep, r, asked, _LINE * float(r.min()), give)
+        out = at.copy()
+        out[which] = self._placed(line, at[which], along[which], inwards[which], deep * unit)
+        lost = ~shapely.intersects_xy(self.outline, out[:, 0], out[:, 1])
+        out[lost] = at[lost]
+        return out
+
+    def _placed(
+        self, line: LineString, at: Floats, along: Floats, before: Floats, after: Floats
+    ) -> Floats:
+        """Return places so far in from the places of a line that are next to dots."""
+        foot = shapely.get_coordinates(shapely.line_interpolate_point(line, along))
+        step = 1e-6 * line.length
+        low, high = np.maximum(along - step, 0.0), np.minimum(along + step, line.length)
+        tangent = shapely.get_coordinates(shapely.line_interpolate_point(line, high))
+        tangent -= shapely.get_coordinates(shapely.line_interpolate_point(line, low))
+        tangent /= np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
+        inward = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+        out = ~shapely.intersects_xy(self.outline, *(foot + step * inward).T)
+        inward[out] *= -1.0
+        far = before > step
+        inward[far] = (at[far] - foot[far]) / before[far, None]
+        placed: Floats = foot + after[:, None] * inward
+        return placed
+
+
+def along_line(line: LineString, n: int) -> Floats:
+    """Return n places at equal distances along a line."""
+    at = (np.arange(n) + 0.5) * (line.length / n)
+    return np.asarray(shapely.get_coordinates(shapely.line_interpolate_point(line, at)))
+
+
+def _joined(edges: Floats) -> tuple[LineString, ...]:
+    if not len(edges):
+        return ()
+    merged = shapely.line_merge(
+        shapely.multilinestrings(shapely.linestrings(edges.reshape(-1, 2, 2)))
+    )
+    return tuple(shapely.get_parts(merged))
+
+
+def _polygons(shape: shapely.Geometry) -> Outline:
+    parts: list[Polygon] = [p for p in shapely.get_parts(shape) if isinstance(p, Polygon)]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+
+
+def _inside_of(outline: Outline, at: Floats, inset: Floats) -> Floats:
+    """Return the places within an outline next to places on its border."""
+    if not len(at):
+        return at
+    inner = shapely.buffer(outline, -float(inset.min()), join_style="mitre")
+    if inner.is_empty:
+        return at
+    way = shapely.shortest_line(inner, shapely.points(at))
+    return np.asarray(shapely.get_coordinates(way)[::2])

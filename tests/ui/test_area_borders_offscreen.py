@@ -1,0 +1,51 @@
+"""The border policy in the panel of areas: chosen by hand, kept, undone, and used."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stippler
+from stippler.drawing.planar import edits
+from stippler.ui.panels.layout import AREAS
+from tests.editor.area_hands import box
+
+
+@pytest.fixture
+def halves(desk, picture):
+    """A picture of which an area takes the left part."""
+    desk.host.drop(picture)
+    session = desk.app.session
+    desk.host.until(lambda: session.phase == "done", "the drawing")
+    acts = desk.app.editor.area_acts
+    page = session.document.drawing.page
+    left = box(0, 0, page.width_mm / 2, page.height_mm)
+    acts.edit("Draw area", lambda m: edits.add(m, left))
+    desk.app.editor.show_panel(AREAS)
+    desk.host.settle()
+    return desk
+
+
+def test_a_border_is_seen_through_by_hand(halves, tmp_path):
+    host, session = halves.host, halves.app.session
+    acts, document = halves.app.editor.area_acts, session.document
+    host.click("area page")
+    host.key("p", ctrl=True, shift=True)
+    host.type("border through")
+    host.key("enter")
+    host.settle()
+    assert document.drawing.style_of(0).border == document.drawing.style_of(1).border == "through"
+    assert session.style.border == "through"
+    document.undo()
+    assert document.drawing.style_of(1).border == "automatic"
+    document.redo()
+    acts.choice.choose((0, 1))
+    acts.process()
+    host.until(lambda: not session.busy, "the dots")
+    dots = document.dots
+    np.testing.assert_array_equal(document.partition.area_at(dots.position_mm), dots.area)
+    assert set(np.unique(dots.area)) == {0, 1}
+    path = tmp_path / "halves.stipple"
+    session.save(path)
+    host.until(lambda: path.exists() and not session.exporting, "the file")
+    assert stippler.open(path).styles[0].border == "through"
