@@ -1,8 +1,8 @@
 """The controls that panels are made of: one look, tooltips that name effect and unit.
 
 Every control leaves the rectangle it took under its label in `marks` for scripted input, where
-`Fields.is_watched`. A label that finds no room is written smaller, or above its control; what still has to be
-cut is noted in `cut`.
+`Fields.is_watched`. A label that finds no room is written smaller, or above its control; what still
+has to be cut is noted in `cut`.
 """
 
 from __future__ import annotations
