@@ -28,7 +28,11 @@ GROUPS = {
 }
 """The first part of a command's name, and the menu it stands in; in the menu bar's order."""
 
-_SHOWN = {"page_up": "Page Up", "page_down": "Page Down", "escape": "Esc"}
+_SHOWN = {
+    "page_up": "Page Up", "page_down": "Page Down", "escape": "Esc", "kp_add": "Keypad Plus",
+    "kp_subtract": "Keypad Minus", "kp_multiply": "Keypad Times", "kp_divide": "Keypad Divide",
+    "kp_enter": "Keypad Enter", "kp_decimal": "Keypad Point",
+}  # fmt: skip
 _SMALL = {",": "Comma", ".": "Period"}  # hard to see where nothing stands before them
 _NAMES = {shown.lower(): name for name, shown in (_SHOWN | _SMALL).items()}
 

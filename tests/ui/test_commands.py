@@ -38,12 +38,18 @@ def made(ran: list[str] | None = None) -> Commands:
         (Key("+"), "+"),
         (Key(",", CTRL), "Ctrl+,"),
         (Key(","), "Comma"),
+        (Key("kp_add"), "Keypad Plus"),
+        (Key("kp_enter", CTRL), "Ctrl+Keypad Enter"),
     ],
 )
 def test_a_key_is_read_as_it_is_written(key: Key, text: str) -> None:
     assert str(key) == text
     assert str(Key.read(text)) == text
     assert Key.read(text) == key
+
+
+def test_keys_that_were_kept_as_the_system_names_them_are_read() -> None:
+    assert Key.read("Kp_add") == Key("kp_add")
 
 
 @pytest.mark.parametrize("text", ["", "Ctrl+", "Hyper+L", "Ctrl+Hyper+L"])
