@@ -189,11 +189,15 @@ def process(
     from stippler.api import open as open_drawing
     from stippler.api import process as process_areas
     from stippler.export import check_output
+    from stippler.jobs.preflight import processing_warning
 
     check_output(output, [_input(file)], "")
     drawing = open_drawing(file)
     named = {one.name for one in drawing.areas.values()}
     areas = [int(one) if one.isdecimal() and one not in named else one for one in area]
+    styles = [asked.style] if asked.options else drawing.styles.values()
+    if text := processing_warning(drawing, styles):
+        _note(file, text)
     made = process_areas(drawing, areas, style=asked.base, **asked.keywords)
     made.inputs = (file,)
     made.save(output)
@@ -227,10 +231,10 @@ def scale(
 @with_style_options
 def stats(
     context: typer.Context,
-    file: Annotated[Path, typer.Argument(help="A .csv from render, or a picture to draw.")],
+    file: Annotated[Path, typer.Argument(help="A drawing (.stipple, .csv), or a picture to draw.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     reference: Annotated[
-        Path | None, typer.Option(help="For a .csv: the picture that its ink should meet.")
+        Path | None, typer.Option(help="For a drawing: the picture that its ink should meet.")
     ] = None,
     *,
     asked: Asked,
@@ -238,13 +242,21 @@ def stats(
     """Print the number of dots, their spacing, spectrum and tone error.
 
     A picture is drawn as render would draw it with the same options, and nothing is written. For a
-    .csv, --reference, --width and --tone say what it was drawn from.
+    .csv, --reference, --width and --tone say what it was drawn from; a .stipple knows.
     """
     _check_page(asked)
+    from stippler.opening import is_drawing
+
     with at_hand(file) as at, at_hand(reference or file) as seen:
         from stippler import stats as statistics
 
-        if _is_table(file, at):
+        if not _is_table(file, at) and is_drawing(at):
+            if asked.options.keys() - {"tone"}:
+                raise ParameterError(
+                    "is drawn already", file, "leave out all but --reference and --tone"
+                )
+            report = statistics.of_drawing(at, None if reference is None else seen, tone=asked.tone)
+        elif _is_table(file, at):
             if asked.options.keys() - {"width_mm", "tone"}:
                 raise ParameterError(
                     "is drawn already", file, "leave out all but --reference, --width and --tone"
@@ -254,7 +266,7 @@ def stats(
             )
         else:
             if reference is not None:
-                raise ParameterError("is for a .csv", "reference", "a picture is its own")
+                raise ParameterError("is for a drawing", "reference", "a picture is its own")
             report, notes = statistics.of_picture(
                 at, asked.style, tone=asked.tone, width_mm=asked.width_mm
             )

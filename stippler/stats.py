@@ -12,12 +12,14 @@ from stippler.analysis.report import Report, measure_against, measure_dots
 from stippler.api import draw
 from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.dots import Dots
+from stippler.drawing.partition import Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError
 from stippler.files.read.picture import read_picture
 from stippler.files.read.table import read_csv
-from stippler.stippling.style_tone import toned
+from stippler.opening import open_file
+from stippler.stippling.style_tone import toned, toned_by_area
 
 _SAID = {
     "dots": "dots",
@@ -47,9 +49,37 @@ _SAID = {
 def of_table(path: Path, reference: Path | None, *, tone: str, width_mm: float) -> Report:
     """Measure a .csv, and against a picture its tone error too; the page is as wide as given."""
     dots = read_csv(path)
-    report = measure_dots(dots.position_mm, dots.radius_mm)
     if reference is None:
+        return measure_dots(dots.position_mm, dots.radius_mm)
+    return _of_dots(dots, path, reference, tone=tone, width_mm=width_mm)
+
+
+def of_drawing(path: Path, reference: Path | None, *, tone: str) -> Report:
+    """Measure a drawing of our own, and its tone error where it has a picture or is given one.
+
+    What it has is taken as the styles of its areas see it.
+    """
+    drawing = open_file(path)
+    dots = drawing.dots
+    if reference is not None:
+        return _of_dots(dots, path, reference, tone=tone, width_mm=drawing.page.width_mm)
+    report = measure_dots(dots.position_mm, dots.radius_mm)
+    if drawing.reference is None:
         return report
+    partition = Partition(drawing.outlines())
+    seen = toned_by_area(
+        drawing.reference,
+        {k: (partition.part_of(k), drawing.style_of(k)) for k in drawing.areas},
+    )
+    report |= _against(dots, seen)
+    if drawing.style_of(PAGE_AREA).is_inverse:
+        report["tone_bias"] = -report["tone_bias"]
+    return report
+
+
+def _of_dots(dots: Dots, path: Path, reference: Path, *, tone: str, width_mm: float) -> Report:
+    """Measure dots against the picture at a path, on a page so wide."""
+    report = measure_dots(dots.position_mm, dots.radius_mm)
     picture = read_picture(reference, tone=tone, width_mm=width_mm)
     size = np.array((picture.width_mm, picture.height_mm))
     off = (dots.position_mm < -1e-6) | (dots.position_mm > size + 1e-6)

@@ -153,6 +153,22 @@ def test_stats_of_a_table_are_those_of_its_picture(picture, tmp_path, monkeypatc
     assert "tone" not in alone.stdout
 
 
+def test_stats_of_a_drawing_know_its_picture(picture, tmp_path, monkeypatch, capsys):
+    made = ["--dots", 900, "--width", 80, "--iterations", 3]
+    out = tmp_path / "dots.stipple"
+    assert run("render", picture, "-o", out, *made).returncode == 0
+    kept = json.loads(run_here(monkeypatch, capsys, "stats", out, "--json").stdout)
+    drawn = json.loads(run_here(monkeypatch, capsys, "stats", picture, *made, "--json").stdout)
+    assert kept == pytest.approx(drawn, rel=1e-6, abs=1e-9)
+    given = run_here(monkeypatch, capsys, "stats", out, "--reference", picture, "--json").stdout
+    assert json.loads(given) == pytest.approx(drawn, rel=1e-6, abs=1e-9)
+    told = run_here(monkeypatch, capsys, "stats", out, "--dots", 5)
+    assert_one_line(told, 2, "dots.stipple", "is drawn already")
+    bad = tmp_path / "bad.stipple"
+    bad.write_bytes(out.read_bytes()[:500])
+    assert_one_line(run_here(monkeypatch, capsys, "stats", bad), 1, "bad.stipple")
+
+
 @pytest.mark.parametrize(
     ("args", "status", "words"),
     [

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from stippler.drawing import records
-from stippler.drawing.area import Area
+from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.partition import Outline
@@ -114,6 +114,7 @@ def _take(
     _set_borders(document, outcome.map)
     _set_areas(document, before, outcome, style, names)
     _hand_over(document, before, outcome.map)
+    _adopt(document, outcome)
 
 
 _last: WeakKeyDictionary[Document, PlanarMap] = WeakKeyDictionary()
@@ -168,7 +169,7 @@ def _set_areas(
 ) -> None:
     areas: dict[int, Area] = document.drawing.table(records.AREA)
     for k in sorted(touched(before, outcome.map) | set(outcome.made)):
-        if k in outcome.gone:
+        if k in outcome.gone and k != PAGE_AREA:  # the page's owns nothing then, and stays
             continue
         outline = outcome.map.outline(k)
         if k in areas:
@@ -178,7 +179,7 @@ def _set_areas(
             made = Area(names.get(k) or f"area {k}", outline, own, _COLOURS[k % len(_COLOURS)])
             document.set(records.AREA, k, made)
     for k in outcome.gone:
-        if k in areas:
+        if k in areas and k != PAGE_AREA:
             document.set(records.AREA, k, None)
     document.drawing.next_id[records.AREA] = max(
         outcome.map.next_area, document.drawing.first_free(records.AREA)
@@ -197,6 +198,15 @@ def _hand_over(document: Document, before: PlanarMap, after: PlanarMap) -> None:
     kept = area >= 0
     if kept.any():
         document.change("area", which[kept], area[kept].astype(np.int32))
+
+
+def _adopt(document: Document, outcome: Outcome) -> None:
+    """Give dots that areas which are gone have left, on the very rim, to those that are there."""
+    gone = [k for k in outcome.gone if k != PAGE_AREA]
+    rows = np.flatnonzero(np.isin(document.dots.area, gone)) if gone else np.empty(0, np.int64)
+    if len(rows):
+        area = outcome.map.area_at(document.dots.position_mm[rows])
+        document.change("area", rows, np.maximum(area, PAGE_AREA).astype(np.int32))
 
 
 def refuse_locked(drawing: Drawing, before: PlanarMap, after: PlanarMap) -> None:

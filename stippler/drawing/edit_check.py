@@ -31,13 +31,16 @@ def check_edit(edit: Edit, document: Document) -> None:
     _check_values(edit, document)
     dots = edit.dots
     for placed in (dots.removed, dots.inserted):
-        _check_placed(placed)
+        if placed is not DotRows.none():
+            _check_placed(placed)
     for name, change in dots.changes.items():
         _check_change(name, change)
     if len(dots.removed) or len(dots.inserted) or len(dots.shifted.ids):
         _check_layout(dots, document)
     for change in dots.changes.values():
-        stays = (document.rows(change.ids) >= 0) & ~np.isin(change.ids, dots.removed.dots.id)
+        stays = document.rows(change.ids) >= 0
+        if len(dots.removed):
+            stays &= ~np.isin(change.ids, dots.removed.dots.id)
         if not stays.all():
             raise ValueError("changes dots that are not there before and after")
     _check_owners(edit, document)
@@ -134,13 +137,15 @@ def _check_owners(edit: Edit, document: Document) -> None:
     """Dots belong to areas that there are, and lie on lines that there are."""
     for field, kind in (("area", records.AREA), ("curve", records.LINE)):
         for side, placed in ((0, edit.dots.removed), (1, edit.dots.inserted)):
-            there = np.fromiter(_ids(kind, edit, document, side), np.int64)
-            told = [getattr(placed.dots, field)]
+            told = [getattr(placed.dots, field)] if len(placed) else []
             change = edit.dots.changes.get(field)
             if change is not None:
                 told.append(change.after if side else change.before)
             if kind in edit.values:
                 told.append(_left_alone(field, edit, document.dots))
+            if not told:
+                continue
+            there = np.fromiter(_ids(kind, edit, document, side), np.int64)
             for values in told:
                 owned = values if field == "area" else values[values >= 0]
                 if not np.isin(owned, there).all():

@@ -32,6 +32,7 @@ def process(session: Session, areas: Sequence[int]) -> bool:
     chosen = [] if document is None else _unlocked(session, document, areas)
     if document is None or not chosen:
         return False
+    from stippler.jobs.preflight import processing_warning
     from stippler.jobs.processing import process_areas, tasks_of
 
     session.supersede()
@@ -40,6 +41,9 @@ def process(session: Session, areas: Sequence[int]) -> bool:
     except StipplerError as error:
         session.messages.say(str(error), WARNING)
         return False
+    styles = [document.drawing.style_of(area) for area in chosen]
+    if text := processing_warning(document.drawing, styles):
+        session.messages.say(text, WARNING)
     source = session.source
     session.launch(
         lambda: process_areas(tasks),

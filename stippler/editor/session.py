@@ -240,6 +240,7 @@ class Session(SessionState):
         drawing, owned = document.drawing, document.partition.part_of
         parts = [part_for_dots(drawing, k, owned(k)) for k in areas if not owned(k).is_empty]
         outlines, source = [part for part in parts if not part.is_empty], self.source
+        self._warn("fill", self.n_dots + values.n_dots * len(outlines))
         self.launch(
             lambda: stippling.fill(outlines, values),
             lambda k: Filling(k, "fill", source, values.radius_mm),

@@ -5,17 +5,27 @@ Estimates are of measured peaks, rounded up (`docs/reliability.md`); they warn a
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stippler.drawing.style import DEFAULT_DOTS
+
+if TYPE_CHECKING:
+    from stippler.drawing.drawing import Drawing
+    from stippler.drawing.style import Style
 
 MB = 1 << 20
 
-_PER_DOT = {"stipple": 1000, "relax": 600, "export": 200, "save": 200}
+_PER_DOT = {"stipple": 1000, "process": 1000, "fill": 600, "relax": 600, "export": 200, "save": 200}
 _PER_PIXEL = 30  # of the field that dots are made from
 _PER_FILE_PIXEL = 12  # of the picture as it is decoded
 _MOST_FIELD_PIXELS = 16_000_000
 _ALWAYS = 100 * MB
 _DO = {
     "stipple": "ask for fewer dots, or a smaller picture",
+    "process": "save first, or process fewer areas at a time",
+    "fill": "save first, or fill with fewer dots",
     "relax": "save first, or relax an area at a time",
     "export": "save first, and choose fewer dots per inch",
     "save": "close other programs first",
@@ -57,7 +67,7 @@ def needed_bytes(job: str, n_dots: int, n_pixels: int = 0) -> int:
 
     Parameters
     ----------
-    job : {"stipple", "relax", "export", "save"}
+    job : {"stipple", "process", "fill", "relax", "export", "save"}
     n_pixels : int
         Of the picture that dots are made from, or of the one that is exported.
     """
@@ -65,6 +75,8 @@ def needed_bytes(job: str, n_dots: int, n_pixels: int = 0) -> int:
     if job == "stipple":
         field = min(n_pixels, _MOST_FIELD_PIXELS)
         need += _PER_PIXEL * field + _PER_FILE_PIXEL * n_pixels
+    elif job == "process":  # the picture is read already
+        need += _PER_PIXEL * min(n_pixels, _MOST_FIELD_PIXELS)
     elif job == "export":
         need += n_pixels  # bands of it at a time, and what packs them
     return need
@@ -76,6 +88,14 @@ def warning(job: str, n_dots: int, n_pixels: int = 0) -> str:
     if free is None or need <= _LEFT * free:
         return ""
     return f"this may need {_told(need)}, and {_told(free)} are free; {_DO[job]}"
+
+
+def processing_warning(drawing: Drawing, styles: Iterable[Style]) -> str:
+    """Return what to tell before areas of some styles are made anew, one after the other."""
+    reference = drawing.reference
+    n_pixels = 0 if reference is None else reference.source.darkness.size
+    n_dots = max((style.n_dots or DEFAULT_DOTS for style in styles), default=0)
+    return warning("process", n_dots, n_pixels)
 
 
 def _told(n_bytes: int) -> str:

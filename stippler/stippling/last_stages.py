@@ -15,6 +15,8 @@ from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
 from stippler.stippling.radii import solve_radii
+from stippler.stippling.stretched import InkOfShapes, is_stretched, shapes_of
+from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
 
 _PARTED, _LAST = 40, 200  # thousandths of the work on the tone before sizes are solved
@@ -22,6 +24,7 @@ _GIVES = (0.6, 0.3, 0.2, 0.1)  # how far a dot may move across the page's edge, 
 _NOTED, _BANDS = 0.03, 10  # tone that may lack without a note, in so many bands of darkness
 _APART = 0.6  # spacings that dots keep at least from those beyond the border
 _ROUNDS = 4
+_ROUNDS_OF_LONG = 3  # of sizes solved anew for dots that are not round
 
 
 def trim(draft: Draft, watched: bool) -> Iterator[Step]:
@@ -84,6 +87,25 @@ def radii(draft: Draft, watched: bool) -> Iterator[Step]:
             yield Step(TONED, round(_LAST + (1000 - _LAST) * share), 1000)
         else:
             draft.radii = solved[n:]
+    if is_stretched(draft.style) and len(points) and raster.rule.varies:
+        draft.radii = _for_long_dots(draft, points, solved, cells)[n:]
+
+
+def _for_long_dots(
+    draft: Draft, points: Floats, radii: Floats, cells: Tessellation | None
+) -> Floats:
+    """Solve the sizes anew until what long dots ink meets the tone."""
+    raster, reference = draft.raster, draft.task.reference
+    assert reference is not None, "sizes by tone need a picture"
+    ink = InkOfShapes(raster.darkness, points, draft.style.seed)
+    at_mm = points * raster.pixel_mm + np.array(draft.ground.origin_mm)
+    dots = shapes_of(at_mm, radii * raster.pixel_mm, draft.style, reference)
+    for _ in range(_ROUNDS_OF_LONG):
+        gain = ink.gain(radii, dots)
+        *_, (_, radii) = solve_radii(
+            points, raster.darkness, raster.rule, tessellation=cells, gain=gain
+        )
+    return radii
 
 
 def shortfall_of(draft: Draft, watched: bool) -> Iterator[Step]:

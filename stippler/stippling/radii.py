@@ -37,6 +37,7 @@ def solve_radii(
     rule: DotRule,
     n_dots: int | None = None,
     tessellation: Tessellation | None = None,
+    gain: NDArray[np.float64] | None = None,
 ) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Find radii at which the union of the discs meets the darkness.
 
@@ -54,6 +55,8 @@ def solve_radii(
     tessellation : Tessellation, optional
         The dots' cells in their compartments, in pixels, with the ink they ask for as `mass`: for
         areas and patterns. Else the cells are those of the page, and ask for what it is dark.
+    gain : (n,) float64, optional
+        What the ink that each cell asks for is multiplied with.
 
     Yields
     ------
@@ -81,6 +84,8 @@ def solve_radii(
         cells = _Cells(n, MAX_CORNERS)
         for share in cells.build(points[order], cell_start, frame, darkness):
             yield 0.8 * share, result
+    if gain is not None:
+        cells.asked *= gain[order]
     yield 0.8, result
     cells.fit(low, high)
     if low < high:

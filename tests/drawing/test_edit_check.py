@@ -13,6 +13,7 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.edit import Edit
 from stippler.drawing.edit_check import check_edit
 from stippler.drawing.style import Style
+from stippler.errors import StipplerError
 from tests.corpus.contents import CONTENTS
 
 
@@ -202,3 +203,55 @@ def test_what_does_not_fit_is_refused(name):
     doc = document()
     with pytest.raises(ValueError, match=r"."):
         check_edit(WRONG[name](doc), doc)
+
+
+ODD = (-1, 0, 1, 2, 7, 2**31, 2**53, np.nan, np.inf)
+
+
+def damaged(arrays, rng):
+    """Change a value, a length, an order or a type of one array."""
+    names = sorted(name for name in arrays if name != "values" and len(arrays[name]))
+    name = names[rng.integers(len(names))]
+    values = arrays[name].copy()
+    match rng.integers(4):
+        case 0:
+            with np.errstate(all="ignore"):
+                values.reshape(-1)[rng.integers(values.size)] = np.array(
+                    ODD[rng.integers(len(ODD))]
+                ).astype(values.dtype)
+        case 1:
+            values = values[: rng.integers(len(values))]
+        case 2:
+            values = values[rng.permutation(len(values))]
+        case 3:
+            values = values.astype(np.float32 if values.dtype != np.float32 else np.int16)
+    return {**arrays, name: values}
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32 - 1))
+@pytest.mark.filterwarnings("ignore:invalid value encountered in cast")
+def test_a_damaged_edit_is_refused_or_leaves_a_whole_drawing(seed):
+    rng, doc = np.random.default_rng(seed), document()
+    other = Document(doc.drawing.snapshot())
+    edit = random_edit(doc, rng)
+    before = other.dots.copy()
+    arrays = dict(edit.arrays())
+    if not any(name != "values" and len(values) for name, values in arrays.items()):
+        return
+    try:
+        bad = Edit.from_arrays(damaged(arrays, rng), {})
+        check_edit(bad, other)
+    except (ValueError, KeyError, TypeError, IndexError, StipplerError):
+        assert np.array_equal(other.dots.id, before.id)
+        assert other.dots.position_mm.tobytes() == before.position_mm.tobytes()
+        return
+    for one in (bad, bad.inverse()):
+        check_edit(one, other)
+        other._apply(one)
+        dots = other.dots
+        assert len(np.unique(dots.id)) == len(dots)
+        assert np.array_equal(other.rows(dots.id), np.arange(len(dots)))
+        assert np.isin(dots.area, list(other.drawing.areas)).all()
+        assert np.isfinite(dots.position_mm).all()
+        assert (dots.radius_mm > 0).all()

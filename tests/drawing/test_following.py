@@ -225,6 +225,57 @@ class TestDocument:
         document.undo()
         assert len(document.dots) == 40
 
+    def test_dots_of_a_draft_lie_along_the_edges_where_they_have_come_to_lie(self):
+        """Dark left of x = 10, with an edge that goes up and down."""
+        darkness = np.zeros((20, 40), np.float32)
+        darkness[:, :20] = 1.0
+        document = Document(Drawing.blank(Page(20, 10)))
+        style = Style(n_dots=2, elongation=2.0, direction_by="edges", direction_deg=10.0)
+        document.begin_draft("Stipple", 0, style, Reference(darkness, 20.0))
+        assert document.in_draft
+        document.draft(np.array([[2.0, 5.0], [17.0, 5.0]]), np.full(2, 0.3, np.float32))
+        document.draft(np.array([[10.0, 5.0], [17.0, 5.0]]), np.full(2, 0.3, np.float32))
+        document.end_draft()
+        along = np.mod(document.dots.angle_rad, np.pi)
+        assert along[0] == pytest.approx(np.pi / 2, abs=0.2)
+        assert along[1] == pytest.approx(np.radians(10.0), abs=0.2)
+        assert (document.dots.elongation >= 2.0).all()
+        document.draft(np.zeros((1, 2)), np.ones(1, np.float32))  # there is none to show
+        assert len(document.dots) == 2
+
+    def test_a_draft_of_nothing_is_no_step(self):
+        document = Document(Drawing.blank(Page(20, 10)))
+        document.begin_draft("Stipple", 0, document.drawing.styles[0])
+        assert document.end_draft().is_empty
+        assert not document.history.steps
+
+    @pytest.mark.parametrize("back", [True, False])
+    def test_a_step_for_which_memory_runs_out_is_not_counted(self, monkeypatch, back):
+        document = some_document()
+        document.begin("Move")
+        document.move(np.array([1]), np.array([[3.0, 3.0]]))
+        document.commit()
+        if not back:
+            document.undo()
+        before, n_done = document.dots.copy(), document.history.n_done
+
+        def none_left(self, edit):
+            raise MemoryError
+
+        step = document.undo if back else document.redo
+        with monkeypatch.context() as patch:
+            patch.setattr(DotStore, "apply", none_left)
+            with pytest.raises(MemoryError):
+                step()
+        assert document.history.n_done == n_done
+        assert np.array_equal(document.dots.position_mm, before.position_mm)
+        assert step()
+        assert document.history.n_done == (0 if back else 1)
+
+    def test_memory_is_counted(self):
+        little, much = some_document(10), some_document(5000)
+        assert much.n_bytes - little.n_bytes > 4990 * 62
+
     def test_what_was_done_beside_an_edit_of_areas_goes_with_it(self):
         document = some_document()
         made = Path.polyline([(1, 1), (9, 1), (9, 9), (1, 9)], closed=True)
@@ -280,6 +331,10 @@ class TestValues:
             (lambda: Style.of(doots=5), "'doots' is unknown"),
             (lambda: Style.from_json({"doots": 5}), "'doots' is unknown"),
             (lambda: Style(name=5), "is no name"),
+            (lambda: Style(sizes="regions", first_dots="random"), "has no regions"),
+            (lambda: Style(sizes="regions", spacing="square"), "has no regions"),
+            (lambda: Style(n_dots=5, density_per_cm2=5.0), "beside a number"),
+            (lambda: Style(tone_white=0.5, tone_black=0.5), "is not below"),
         ],
     )
     def test_values_that_are_none(self, make, why):

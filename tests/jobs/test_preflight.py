@@ -1,5 +1,7 @@
 import pytest
 
+from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.style import Style
 from stippler.jobs import preflight
 
 
@@ -33,7 +35,7 @@ def test_nothing_is_said_where_nothing_is_known(monkeypatch, tmp_path):
     assert preflight.available_bytes() is None
 
 
-@pytest.mark.parametrize("job", ["stipple", "relax", "export", "save"])
+@pytest.mark.parametrize("job", ["stipple", "process", "fill", "relax", "export", "save"])
 def test_a_job_that_does_not_fit_is_told_and_what_to_do(monkeypatch, tmp_path, job):
     told(monkeypatch, tmp_path, free_kb=1 << 20)  # a GB
     assert preflight.warning(job, 100_000, 1_000_000) == ""
@@ -43,6 +45,15 @@ def test_a_job_that_does_not_fit_is_told_and_what_to_do(monkeypatch, tmp_path, j
 
 
 def test_needs_grow_with_dots_and_pixels():
-    for job in ("stipple", "export"):
+    for job in ("stipple", "process", "export"):
         needs = [preflight.needed_bytes(job, n, p) for n, p in ((0, 0), (10**6, 0), (10**6, 10**7))]
         assert needs == sorted(set(needs))
+
+
+def test_areas_made_anew_are_told_of_by_the_largest_style(monkeypatch, tmp_path):
+    drawing = Drawing.blank(Page(40.0, 30.0))
+    told(monkeypatch, tmp_path, free_kb=1 << 20)
+    small, large = Style(n_dots=1000), Style(n_dots=900_000)
+    assert preflight.processing_warning(drawing, [small]) == ""
+    told(monkeypatch, tmp_path, free_kb=1 << 19)
+    assert "fewer areas" in preflight.processing_warning(drawing, [small, large])

@@ -72,6 +72,15 @@ def sliver(seed: int) -> Polygon:
     return Polygon([(0, 0), (3, 0.5), (3, 0.5 + width), (1, 1 / 6 + width)])
 
 
+def on_an_edge(shape: Polygon, seed: int) -> np.ndarray:
+    """A dot just on an edge, if rounding lets one be there; else none."""
+    ring = shapely.get_coordinates(shape.exterior)
+    middle = 0.5 * (ring[:-1] + ring[1:])
+    middle = middle[shapely.distance(shape.boundary, shapely.points(middle)) == 0.0]
+    middle = middle[shapely.intersects_xy(shape, middle[:, 0], middle[:, 1])]
+    return middle[[seed % len(middle)]] if len(middle) else middle
+
+
 MAKERS = [
     lambda seed: star_polygon(seed, 3 + seed % 40), lambda seed: comb(2 + seed % 5),
     lambda seed: gear(5 + seed % 12), lambda seed: spiral(1.5, 0.2 + 0.1 * (seed % 6)),
@@ -92,6 +101,8 @@ def test_subdivisions_to_1e_10(data):
         if len(xy) and data.draw(st.booleans()):
             corners = shapely.get_coordinates(shapes[-1])[:-1]
             xy = np.vstack([xy, corners[seed % len(corners)]])
+        if data.draw(st.booleans()):
+            xy = np.vstack([xy, on_an_edge(shapes[-1], seed)])
         dots.append(xy)
         owner += [k] * len(xy)
     values = np.random.default_rng(len(owner)).random((5, 9))

@@ -13,8 +13,10 @@ from stippler import export
 from stippler.app import App
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.reference import Reference
 from stippler.drawing.store import DotStore
 from stippler.drawing.style import Style
+from stippler.editor import processing
 from stippler.editor.log_file import begin_log, end_log, log_path
 from stippler.files.native import drawing_file, recovery
 from stippler.files.native.drawing_file import members_of, save_drawing
@@ -160,6 +162,24 @@ def test_a_job_that_will_not_fit_is_told_before(kept, tmp_path, monkeypatch):
     host.until(lambda: not app.session.exporting, "the file")
     assert any("52 MB are free" in line.text for line in app.session.messages.log)
     assert (tmp_path / "ear.svg").exists()  # it warns; the person decides
+
+
+def test_filling_and_processing_that_will_not_fit_are_told_before(kept, monkeypatch):
+    app, host = kept
+    session = app.session
+    monkeypatch.setattr(preflight, "available_bytes", lambda: 50 << 20)
+    session.fill()
+    host.until(lambda: not session.busy, "the dots")
+    assert any("fill with fewer dots" in line.text for line in session.messages.log)
+    assert session.n_dots > 400  # it warns; the person decides
+    field = np.tile(np.linspace(0, 1, 40), (30, 1))
+    document = session.document
+    document.begin("Picture")
+    document.set("reference", 0, Reference(field, 120.0))
+    document.commit()
+    assert processing.process(session, [0])
+    host.until(lambda: not session.busy, "the page")
+    assert any("process fewer areas" in line.text for line in session.messages.log)
 
 
 def boom(*_, **__):

@@ -42,7 +42,7 @@ class Lock:
     def take(self) -> bool:
         """Take hold of it, if nobody does."""
         try:
-            if os.name == "nt":
+            if os.name == "nt":  # pragma: no cover: another operating system
                 import msvcrt
 
                 msvcrt.locking(self._file, msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
