@@ -310,8 +310,8 @@ class Cells:
 
         Beyond a side of theirs lies what is nobody's, since a border cuts its cell apart.
         """
-        if self.parts.is_convex.all() or len(self.rules.table):
-            return  # by rules, all cells at a border are computed in each step
+        if self.parts.is_convex.all():
+            return
         of_dot = self.compartment_of_dot
         rows = np.flatnonzero(computed & ~self.parts.is_convex[of_dot]).astype(np.int32)
         todo = np.zeros(self.n, np.uint8)

@@ -6,12 +6,16 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import KDTree
+from shapely import affinity
 from shapely.geometry import Point, Polygon, box
 
 from stippler.kernels.machine.pool import n_threads, set_threads
+from stippler.stippling import cells
 from stippler.stippling.density import DensityField
 from stippler.stippling.relax import AT_REST, Relaxation, relax
 from stippler.stippling.spacing import LLOYD
+from tests.conftest import EXAMPLES
+from tests.stippling.shapes import comb, star_polygon
 
 RING = Point(0, 0).buffer(10, quad_segs=12).difference(Point(2, 1).buffer(4, quad_segs=8))
 COMB = Polygon(
@@ -72,6 +76,47 @@ def test_a_kept_neighbour_gives_what_a_search_gives():
         kept.step()
         fresh.step()
         assert np.abs(kept.points - fresh.points).max() < 1e-9
+
+
+@given(
+    seed=st.integers(0, 10**6), n=st.integers(20, 250), is_weighted=st.booleans(),
+    shape=st.sampled_from(["box", "round", "parts", "concave", "holed", "comb"]),
+)  # fmt: skip
+@settings(max_examples=40 * EXAMPLES, deadline=None)
+def test_cells_at_borders_are_kept_as_they_would_be_found(seed, n, is_weighted, shape):
+    """Boxes, convex and concave borders, cells cut apart: kept by rules, and true."""
+    a = np.arange(17) * np.pi / 8.5
+    ring = Polygon(0.5 + 0.4 * np.c_[np.cos(a), np.sin(a)])
+    shapes = {
+        "box": box(0, 0, 1, 1),
+        "round": ring,
+        "parts": [box(0, 0, 0.4, 1), Polygon([(0.4, 0), (1, 0), (1, 0.8), (0.7, 1), (0.4, 1)])],
+        "concave": star_polygon(seed, 3 + seed % 40),
+        "holed": box(0, 0, 1, 1).difference(Point(0.4, 0.5).buffer(0.2)),
+        "comb": affinity.scale(comb(4), 0.25, 1.0, origin=(0, 0)),
+    }
+    parts, rng = shapes[shape], np.random.default_rng(seed)
+    points = 3 * rng.random((4 * n, 2)) - 1 if shape == "concave" else rng.random((n, 2))
+    points = points[shapely.contains_xy(shapely.unary_union(parts), *points.T)]
+    fixed = rng.random(len(points)) < 0.1
+    field = DensityField(rng.random((9, 9)) + 0.05, 1 / 9) if is_weighted else None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cells, "MOST_TODO", 2.0)
+        patch.setattr(cells, "KEEP_BELOW", 10.0)
+        kept = Relaxation(points, parts, fixed, None, field, method="even")
+        fresh = Relaxation(points, parts, fixed, None, field, method="even")
+        for _ in range(8):
+            fresh._cells._keep = False
+            fresh.step()
+            kept.step()
+            gap = np.abs(kept.points - fresh.points).max(initial=0.0)
+            assert gap <= 1e-8 * kept.spacing_mm
+
+
+def test_cells_at_a_pages_edge_are_kept_by_the_rules_too():
+    engine = Relaxation(np.random.default_rng(1).random((3000, 2)), box(0, 0, 1, 1), method="even")
+    engine.run(60)
+    assert engine.n_failed < 30  # some 200 lie at the edge
 
 
 def test_dots_come_to_rest_and_say_so():

@@ -112,6 +112,15 @@ def outline_of_lanes(U: Any, V: Any, m: int, out: F8) -> None:
 
 
 @inline
+def has_walls(out: F8, n: int) -> bool:
+    """Whether something else than a dot lies beyond a side of an outline."""
+    for s in range(n):  # noqa: SIM110 - a kernel
+        if out[s, 4] < 0.0:
+            return True
+    return False
+
+
+@inline
 def put_numbers(N: Any, cell: F8, m: int, is_packed: bool, first_edge: int, out: F8) -> None:
     """Write the numbers of sides of a cell that no polygon cuts; a box's are border edges."""
     for k in range(m):

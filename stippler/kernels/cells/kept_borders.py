@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stippler.kernels.cells.border import outline_of_lanes, sum_field
+from stippler.kernels.cells.border import free_share, has_walls, outline_of_lanes, sum_field
 from stippler.kernels.cells.cell_trees import APART, CROWD
 from stippler.kernels.cells.grid import (
     column_of,
@@ -22,7 +22,18 @@ from stippler.kernels.cells.grid import (
     spot_of,
 )
 from stippler.kernels.cells.moves import move_in_piece
-from stippler.kernels.cells.tables import F8, Border, Dots, Field, Grid, Moves, Spot, Stars
+from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
+from stippler.kernels.cells.tables import (
+    F8,
+    Border,
+    Dots,
+    Field,
+    Grid,
+    Moves,
+    Spacing,
+    Spot,
+    Stars,
+)
 from stippler.kernels.machine.jit import ZERO, inline, inner
 from stippler.kernels.machine.simd import (
     FRONT,
@@ -30,6 +41,7 @@ from stippler.kernels.machine.simd import (
     backward_sides,
     corners_of_lines,
     get,
+    load_lanes,
     lowest_bit,
     moments_of,
     near_mask,
@@ -255,13 +267,36 @@ def _move_in_convex(
 
 
 @inner
+def _way_by_rules(
+    U: Any, V: Any, N: Any, m: int, i: int, is_whole: bool, area: float, mass: float, mu: float,
+    mv: float, du: float, dv: float, dots: Dots, stars: Stars, spacing: Spacing, out: F8,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the way that the rules of spacing take from (du, dv), that to the centre of mass.
+
+    (mu, mv) are the area's first moments; side k of `out` runs from corner k to corner k + 1. Cells
+    without walls, or in a box, count as whole, see `relaxation`.
+    """
+    ask(spacing, i, dots.compartment[i], area, mass)
+    if not mass > 0.0:
+        return 0.0, 0.0
+    if is_whole:
+        load_lanes(N, stars.around, i)
+        put(N, m, get(N, 0))
+        ru, rv = rules_in_lanes(U, V, N, ZERO + 1, m, i, dots.x[i], dots.y[i], dots, spacing)
+    else:
+        ru, rv = rules_at_border(out, m, i, dots.x[i], dots.y[i], dots, spacing)
+    return blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
+
+
+@inner
 def move_by_lines(
-    U: Any, V: Any, A: Any, B: Any, C: Any, m: int, i: int, dots: Dots, grid: Grid,
-    border: Border, field: Field, over: float, moves: Moves, stars: Stars, out: F8,
+    U: Any, V: Any, N: Any, A: Any, B: Any, C: Any, m: int, i: int, dots: Dots, grid: Grid,
+    border: Border, field: Field, over: float, moves: Moves, stars: Stars, spacing: Spacing,
+    out: F8,
 ) -> bool:  # fmt: skip
     """Move a dot at a border by its star; False if that does not hold any more."""
-    x, y = dots.x[i], dots.y[i]
-    is_convex = grid.whole[dots.compartment[i], 5] == 1
+    x, y, c = dots.x[i], dots.y[i], dots.compartment[i]
+    is_convex, by_rules = grid.whole[c, 5] == 1, len(spacing.table) > 0
     pairs = _lines_of_star(A, B, C, m, i, dots, border, stars)
     turned = corners_of_lines(A, B, C, m, U, V)
     if turned & ~pairs or (is_convex and turned):
@@ -271,26 +306,41 @@ def move_by_lines(
         return False
     if not is_convex and not _is_verified(U, V, A, B, C, m, i, dots, grid, border, stars):
         return False
-    area, du, dv = moments_of(U, V, m)
-    area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
-    mass = area
-    if len(field.sums) or not is_convex:
+    area, mu, mv = moments_of(U, V, m)
+    area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
+    mass, du, dv = area, mu, mv
+    if len(field.sums) or not is_convex or by_rules:
         outline_of_lanes(U, V, m, out)
+        for k in range(m):
+            out[k, 4] = float(stars.around[i, k + 1 if k + 1 < m else 0])
     if len(field.sums):
-        mass, du, dv = sum_field(out, m, x, y, dots.compartment[i], field)
-    if mass > 0.0 and not dots.fixed[i]:
+        mass, du, dv = sum_field(out, m, x, y, c, field)
+    is_box = by_rules and grid.whole[c, 3] == 0
+    is_whole = is_box or (by_rules and not has_walls(out, m))
+    if mass > 0.0:
         du, dv = du / mass, dv / mass
-        if is_convex:
-            is_sure, du, dv = _move_in_convex(A, B, C, m, i, stars, du, dv, over)
-            if not is_sure:
-                return False
-        else:
-            for k in range(m):
-                out[k, 4] = float(stars.around[i, k + 1 if k + 1 < m else 0])
-            margin = 1e-10 * math.sqrt(reach2_of(U, V, m)) + 1e-15 * (abs(x) + abs(y))
-            du, dv = move_in_piece(out, m, area, du, dv, over, margin)
     else:
+        mass = du = dv = 0.0
+    if by_rules:
+        if is_whole and len(field.sums):
+            share = free_share(out, m, du, dv)
+            du, dv = share * du, share * dv
+        du, dv = _way_by_rules(
+            U, V, N, m, i, is_whole, area, mass, mu, mv, du, dv, dots, stars, spacing, out
+        )
+    if not mass > 0.0 or dots.fixed[i]:
         du = dv = 0.0
+    elif (is_whole and not is_box) or (is_convex and not by_rules):
+        # where rules send a dot out of its cell the distance of walls counts, which is not known
+        is_sure, du, dv = _move_in_convex(A, B, C, m, i, stars, du, dv, over)
+        if not is_sure:
+            return False
+    elif not is_box:
+        margin = 1e-10 * math.sqrt(reach2_of(U, V, m)) + 1e-15 * (abs(x) + abs(y))
+        du, dv = move_in_piece(out, m, area, du, dv, over, margin)
     moves.x[i], moves.y[i] = x + du, y + dv
+    if is_box:
+        moves.x[i] = min(max(x + du, grid.real[c, 4]), grid.real[c, 6])
+        moves.y[i] = min(max(y + dv, grid.real[c, 5]), grid.real[c, 7])
     moves.gone[i] = math.sqrt(du * du + dv * dv)
     return True

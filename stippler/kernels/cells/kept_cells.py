@@ -83,7 +83,7 @@ def verify_stars(
         todo[i] = 1
         if moves.kind[i] == KEPT:
             todo[i] = not move_by_lines(
-                U, V, A, B, C, m, i, dots, grid, border, field, over, moves, stars, out
+                U, V, N, A, B, C, m, i, dots, grid, border, field, over, moves, stars, spacing, out
             )
             continue
         if moves.kind[i] != INNER or m < 3 or m + 2 > LANES:

@@ -17,6 +17,7 @@ from stippler.kernels.cells.border import (
     border_distance,
     free_share,
     gather_edges,
+    has_walls,
     outline_of_cell,
     outline_of_lanes,
     outline_within,
@@ -150,7 +151,7 @@ def _relax(
         moves.kind[i] = RIM if is_rim else INNER
         if len(stars.around):
             n_star = ZERO
-            if is_rim and len(spacing.table) == 0:
+            if is_rim:
                 n_star = _star_at_border(N, S, m, is_packed, n, grid.whole[c, 4], pads)
             if n_star >= 3:
                 has_holes = n > 0 and pads.out[n - 1, 5] != 0.0
@@ -297,7 +298,7 @@ def _way_by_rules(
     c: int, mass: float, du: float, dv: float, spacing: Spacing, pads: Pads,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the way that the rules of spacing take from (du, dv), that to the centroid."""
-    if is_packed and n == 0:
+    if is_packed and (n == 0 or not has_walls(pads.out, n)):
         area, mu, mv = moments_of(U, V, m)
         area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
         ru, rv = rules_in_lanes(U, V, N, ZERO, m, i, spot.x, spot.y, dots, spacing)
