@@ -320,6 +320,7 @@ class Soak:
             style, tone="linear", width_mm=100.0, size=_SIZE, offscreen=True,
             recovery=folder / "recovery", backups=folder / "backups",
         )  # fmt: skip
+        self.app.editor.gui.fields.is_watched = True  # the hand clicks where controls are
         self.hand = Hand(self.app, folder, seed)
         self.memory_mb: list[float] = []
         self.n_steps = 0

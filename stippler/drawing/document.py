@@ -265,11 +265,9 @@ class Document:
         """
         if self._stroke is not None or self._draft is not None:
             return None
-        copies = [replace(step) for step in self.history.steps]
-        for copy, step in zip(copies, self.history.steps, strict=True):
-            if self._run is not None and step is self._run.step:
-                copy.edit = self._run.edit()
-        return copies
+        run, steps = self._run, self.history.steps
+        known = [run.edit() if run is not None and s is run.step else s.edit for s in steps]
+        return [replace(s, edit=edit) for s, edit in zip(steps, known, strict=True)]
 
     def _step(self, edit: Edit | None, what: str, n_before: int) -> bool:
         if edit is not None:
@@ -305,22 +303,11 @@ class Document:
         if self._run is None:
             return 0
         if self._areas_at > self._run.base:
-            position_mm = self._kept_in_areas(position_mm)
+            position_mm = self._run.kept_in_areas(self._store, self.partition, position_mm)
         n, furthest_mm = self._run.move(self._store, position_mm, self._locked)
         self._index.drift(furthest_mm)
         self.changes.note_places()
         return n
-
-    def _kept_in_areas(self, result: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return a run's places without those that areas drawn since it began forbid."""
-        assert self._run is not None
-        rows = self._store.rows(self._run.ids)
-        wrong = rows >= 0
-        area = self.partition.area_at(np.ascontiguousarray(result[wrong], np.float64))
-        wrong[wrong] = area != self.dots.area[rows[wrong]]
-        out = result.copy()
-        out[wrong] = self.dots.position_mm[rows[wrong]]
-        return out
 
     def merge_radii(self, radius_mm: NDArray[np.float32]) -> int:
         """Give the dots of the run a result's radii, as `merge` does; return how many got one."""

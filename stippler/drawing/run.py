@@ -11,6 +11,7 @@ from stippler.drawing.dot_edit import Change, DotEdit, DotRows, Shift, differs
 from stippler.drawing.dots import Dots
 from stippler.drawing.edit import Edit
 from stippler.drawing.history import Step
+from stippler.drawing.partition import Partition
 from stippler.drawing.store import DotStore, Rows
 from stippler.kernels.dots.merge_results import merge_positions
 
@@ -66,6 +67,18 @@ class Run:
             dots.position_mm,
             self.position_mm,
         )
+
+    def kept_in_areas(
+        self, store: DotStore, partition: Partition, position_mm: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return places without those that areas drawn since the run began forbid."""
+        rows = store.rows(self.ids)
+        wrong = rows >= 0
+        area = partition.area_at(np.ascontiguousarray(position_mm[wrong], np.float64))
+        wrong[wrong] = area != store.dots.area[rows[wrong]]
+        out = position_mm.copy()
+        out[wrong] = store.dots.position_mm[rows[wrong]]
+        return out
 
     def size(
         self,

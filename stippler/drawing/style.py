@@ -300,7 +300,6 @@ def parameter_of(name: str) -> Parameter:
 FIRST_DOTS = parameter_of("first_dots").values
 GROWTHS = parameter_of("growth").values
 STARTS = parameter_of("start").values
-SIZES = parameter_of("sizes").values
 RELAXATIONS = ("even", "lloyd", "delaunay-mean", "springs")
 """Those spacings that even dots out; the others set them where they stay."""
 

@@ -37,11 +37,13 @@ class Fields:
         The one that is drawn; empty outside panels, where nothing is noted.
     is_survey : bool
         Whether panels are drawn out of sight, only to be known.
+    is_watched : bool
+        Whether somebody, such as scripted hands, wants to know where each control is.
     """
 
     def __init__(self) -> None:
         self.panel = ""
-        self.is_survey = False
+        self.is_survey = self.is_watched = False
         self._known: dict[tuple[str, str], Field] = {}
         self._wishes: dict[tuple[str, str], str | int] = {}
 

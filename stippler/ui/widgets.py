@@ -1,8 +1,8 @@
 """The controls that panels are made of: one look, tooltips that name effect and unit.
 
-Every control leaves the rectangle it took under its label in `marks`, so that scripted input can
-find it. A label that finds no room is written smaller, or above its control; what still has to be
-cut is noted in `cut`.
+Every control leaves the rectangle it took under its label in `marks` for scripted input, where
+`Fields.is_watched`. A label that finds no room is written smaller, or above its control; what still
+has to be cut is noted in `cut`.
 """
 
 from __future__ import annotations
@@ -489,8 +489,8 @@ class Widgets:
         imgui.separator()
 
     def note(self, label: str) -> None:
-        """Remember where the last control is, and what can be seen of its window."""
-        if self.fields.is_survey:
+        """Remember where the last control is, and what can be seen of its window, if asked to."""
+        if self.fields.is_survey or not self.fields.is_watched:
             return
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         self.marks[label] = (low.x, low.y, high.x, high.y)

@@ -163,19 +163,6 @@ class ToolState(Protocol):
         ...
 
 
-class Timed(Protocol):
-    """A state that goes on while the pointer rests; it is given every frame."""
-
-    @property
-    def is_timed(self) -> bool:
-        """Whether it goes on now."""
-        ...
-
-    def rest(self, t_s: float) -> None:
-        """Let time go on."""
-        ...
-
-
 class Resting:
     """Nothing is held: the tool at hand begins the next state."""
 

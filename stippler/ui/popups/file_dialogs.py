@@ -7,7 +7,6 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from imgui_bundle import imgui
 from imgui_bundle import portable_file_dialogs as native
@@ -31,10 +30,6 @@ POPUP = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_title_bar
 def has_native_dialogs() -> bool:
     """Return whether the system has a file dialog; without one, native dialogs say "cancelled"."""
     return not sys.platform.startswith("linux") or any(shutil.which(one) for one in _PROGRAMS)
-
-
-class _Asked(Protocol):
-    def ready(self, timeout: int = ...) -> bool: ...
 
 
 @dataclass(slots=True)

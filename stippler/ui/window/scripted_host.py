@@ -41,6 +41,7 @@ class Host:
     def __init__(self, window: Window, editor: Editor, step: Callable[[float], bool]) -> None:
         self._window, self._editor, self._step = window, editor, step
         self._in_batch = False
+        editor.gui.fields.is_watched = True
         window.input.focus(True)
         self.settle()
 
