@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stippler.drawing.document import Document
 from stippler.drawing.edit import Edit
 from stippler.drawing.edit_check import check_edit
-from stippler.drawing.history import Step, edit_of
+from stippler.drawing.history import History, edit_of
 from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
@@ -101,7 +101,7 @@ def replay(
             entry = entry_of(record, pictures, read_picture, f"record {n_done}", limits)
             if entry is not None:
                 order.check(entry, document)
-                document.replay(entry)
+                document.replay(replace(entry, n_done=order.n_done))
                 in_run = entry.what == OPENED or (in_run and entry.what != ENDED)
         except _WRONG as error:
             problem = f"record {n_done}: {str(error) or type(error).__name__}"
@@ -113,10 +113,19 @@ def replay(
 
 
 class _Order:
-    """Refuses entries that a document would not tell in that order, or in that state."""
+    """Refuses entries that a document would not tell in that order, or in that state.
+
+    Attributes
+    ----------
+    n_done : int
+        How many steps of the document's history are in effect after the entry checked last, if it
+        undoes or redoes one. Steps from before the journal are in no history.
+    """
 
     def __init__(self) -> None:
         self._of_run: NDArray[np.int64] | None = None  # ids of the dots that the run began with
+        self._before: list[Edit] = []  # undone steps from before the journal, the oldest last
+        self.n_done = 0
 
     def check(self, entry: Entry, document: Document) -> None:
         """Raise `ValueError` unless an entry may be replayed now."""
@@ -136,11 +145,41 @@ class _Order:
         elif entry.what == MADE and history.steps:
             raise ValueError("makes dots when there is a history already")
         elif entry.what in (UNDONE, REDONE):
-            step = history.undone if entry.what == UNDONE else history.redone
             if self._of_run is not None:
                 raise ValueError("is undone within a run")
-            if edit is None or (step is not None and not _is_step(step, edit, entry.what)):
+            if edit is None:
                 raise ValueError("undoes or redoes another step than the last")
+            self.n_done = (self._undone if entry.what == UNDONE else self._redone)(edit, history)
+        if entry.what in (STEP, OPENED):
+            self._before.clear()
+
+    def _undone(self, edit: Edit, history: History) -> int:
+        """Check what undoes the last step; return how many are in effect then."""
+        step = history.undone
+        if step is None:
+            self._before.append(edit.inverse())
+            return 0
+        known = edit_of(step)
+        if known is not None and not _are_same(known.inverse(), edit):
+            raise ValueError("undoes another step than the last")
+        return history.n_done - 1
+
+    def _redone(self, edit: Edit, history: History) -> int:
+        """Check what does the last undone step again; return how many are in effect then."""
+        if self._before:
+            if not _are_same(self._before[-1], edit):
+                raise ValueError("redoes another step than the last that was undone")
+            self._before.pop()
+            return 0
+        step = history.redone
+        if step is None:
+            if history.steps:
+                raise ValueError("redoes a step that was not undone")
+            return 0  # it was undone before the journal
+        known = edit_of(step)
+        if known is not None and not _are_same(known, edit):
+            raise ValueError("redoes another step than the last that was undone")
+        return history.n_done + 1
 
     def _check_part(self, edit: Edit | None) -> None:
         if edit is None or self._of_run is None:
@@ -152,12 +191,8 @@ class _Order:
             raise ValueError("moves dots that the run does not know")
 
 
-def _is_step(step: Step, edit: Edit, what: str) -> bool:
-    """Return whether an edit does, or takes back, a step of the history."""
-    known = edit_of(step)
-    if known is None:
-        return True
-    wanted = known.inverse() if what == UNDONE else known
+def _are_same(wanted: Edit, edit: Edit) -> bool:
+    """Return whether two edits change the same."""
     mine, others = dict(wanted.arrays()), dict(edit.arrays())
     del mine["values"], others["values"]
     same_dots = mine.keys() == others.keys() and all(
