@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import stippler.ui  # noqa: F401  # isort: skip  # first: it decides which library glfw takes
 import glfw
 import numpy as np
 
