@@ -357,3 +357,24 @@ def test_bursts_from_the_canvas_to_a_panel_and_back(
     until(desk.is_dimmed, "the question")
     desk.xdotool("key", "Escape")
     until(lambda: not desk.is_dimmed(), "the drawing")
+
+
+def test_f11_covers_the_screen_and_gives_it_back(start: Callable[..., Desk]) -> None:
+    desk = start()
+    until(lambda: desk.title() != "", "the window")
+    window = desk.xdotool("search", "--name", "Stippler").partition("\n")[0]
+
+    def size() -> str:
+        told = desk.xdotool("getwindowgeometry", "--shell", window)
+        return " ".join(line for line in told.split() if line.startswith(("WIDTH", "HEIGHT")))
+
+    before, full = "WIDTH=1000 HEIGHT=700", f"WIDTH={SIZE[0]} HEIGHT={SIZE[1]}"
+    desk.xdotool("windowsize", "--sync", window, 1000, 700)
+    until(lambda: size() == before, "the smaller window")
+    desk.focus()
+    desk.xdotool("key", "F11")
+    until(lambda: size() == full, "the full screen")
+    desk.focus()
+    desk.xdotool("key", "F11")
+    until(lambda: size() == before, "the window as it was")
+    assert desk.quit() == (0, "")
