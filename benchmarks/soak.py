@@ -190,7 +190,7 @@ class Hand:
         marks = list(self.app.editor.widgets.marks.values())
         if marks:
             x0, y0, x1, y1 = marks[self._rng.integers(len(marks))]
-            self._at = self._rng.uniform((x0, y0), (x1, y1))
+            self._at = self._rng.uniform((x0, y0), (max(x0, x1), max(y0, y1)))  # some have no room
             self.app.window.input.move(*map(float, self._at))
             for action in (glfw.PRESS, glfw.RELEASE):
                 self.n_frames += self.app.step(0.0)

@@ -237,6 +237,8 @@ class Relaxing(Job):
     def take(self, desk: Desk, work: Work) -> Activity:
         """Move them."""
         self._note(work)
+        if work.notes:
+            desk.messages.say("; ".join(work.notes), WARNING)
         if desk.document is not None:
             if work.moved_mm is not None:
                 desk.document.merge(work.moved_mm)

@@ -234,12 +234,20 @@ class Session(SessionState):
         if document is None or not self.paintable or document.in_stroke:
             self.messages.say("there is no page to fill yet", WARNING)
             return
-        from stippler.stippling.part_of_area import part_for_dots
+        from stippler.stippling.part_of_area import parts_met
 
+        owned = {k: document.partition.part_of(k) for k in areas}
+        try:
+            parts, notes = parts_met(
+                document.drawing, {k: part for k, part in owned.items() if not part.is_empty}
+            )
+        except StipplerError as error:
+            self.messages.say(str(error), WARNING)
+            return
+        for note in notes:
+            self.messages.say(note, WARNING)
         self.supersede()
-        drawing, owned = document.drawing, document.partition.part_of
-        parts = [part_for_dots(drawing, k, owned(k)) for k in areas if not owned(k).is_empty]
-        outlines, source = [part for part in parts if not part.is_empty], self.source
+        outlines, source = [part for part in parts.values() if not part.is_empty], self.source
         self._warn("fill", self.n_dots + values.n_dots * len(outlines))
         self.launch(
             lambda: stippling.fill(outlines, values),

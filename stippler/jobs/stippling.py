@@ -81,7 +81,8 @@ def relax_drawing(
     from stippler.stippling.progress import DONE
     from stippler.stippling.tasks import relaxing
 
-    task, rows = relaxing(drawing, style, steps, areas)
+    task, rows, notes = relaxing(drawing, style, steps, areas)
+    yield Work("relax", 0, steps, notes=notes)
     for made in run(task):
         moved = drawing.dots.position_mm.copy()
         moved[rows] = made.position_mm

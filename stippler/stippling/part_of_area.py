@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.line import DISTANCE, Line
 from stippler.drawing.pattern import Pattern
+from stippler.errors import GeometryError
 from stippler.stippling.patterns import cells_of
 
 Shape: TypeAlias = Polygon | MultiPolygon
@@ -56,6 +58,35 @@ def part_for_dots(drawing: Drawing, area: int, part: Shape) -> Shape:
     if zones:
         shape = _joined([shapely.difference(shape, shapely.union_all(zones))])
     return shape
+
+
+def parts_met(
+    drawing: Drawing, parts: Mapping[int, Shape]
+) -> tuple[dict[int, Shape], tuple[str, ...]]:
+    """Return where the dots of areas may lie, and what there is to say of areas left out.
+
+    Parameters
+    ----------
+    parts : mapping of polygon by id
+        What the areas own. One whose pattern misses it is left out, so that the rest can go on.
+
+    Raises
+    ------
+    GeometryError
+        If none is left.
+    """
+    found, notes = dict[int, Shape](), list[str]()
+    for k, part in parts.items():
+        try:
+            found[k] = part_for_dots(drawing, k, part)
+        except GeometryError as error:
+            if len(parts) == 1:
+                raise
+            name = drawing.areas[k].name if k in drawing.areas else str(k)
+            notes.append(f"area {name!r} was left out: {error}")
+    if parts and not found:
+        raise GeometryError("do not meet their areas", "patterns", "move them over the areas")
+    return found, tuple(notes)
 
 
 def zone_of(line: Line) -> Shape:

@@ -107,7 +107,7 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     """Return a drawing at another size: page, areas, lines, patterns, reference and dots."""
     from stippler.drawing.drawing import Page
     from stippler.drawing.partition import Partition
-    from stippler.stippling.part_of_area import part_for_dots
+    from stippler.stippling.part_of_area import parts_met
 
     f = scaling.factor
     reference = drawing.reference
@@ -132,7 +132,8 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     if reference is not None:
         toned = frozenset(k for k in drawing.areas if drawing.style_of(k).sizes == "tone")
     partition = Partition(drawing.outlines())
-    parts = {k: part_for_dots(drawing, k, partition.part_of(k)) for k in drawing.areas}
+    owned = {k: partition.part_of(k) for k in drawing.areas}
+    parts = owned | parts_met(drawing, owned)[0]
     dots = scaled_dots(before, parts, scaling, toned)
     drawing = replace(drawing, dots=dots, reference=reference)
     for area in sorted(toned):

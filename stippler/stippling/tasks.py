@@ -16,7 +16,7 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import THROUGH, Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.part_of_area import FEW, part_for_dots, pattern_of
+from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met, pattern_of
 from stippler.stippling.progress import Progress
 from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
@@ -30,14 +30,15 @@ Rows = NDArray[np.intp]
 
 def relaxing(
     drawing: Drawing, style: Style, steps: int, areas: Collection[int] | None = None
-) -> tuple[Task, Rows]:
-    """Return the task of relaxing a drawing's dots, and the rows of the dots that it moves.
+) -> tuple[Task, Rows, tuple[str, ...]]:
+    """Return the task of relaxing a drawing's dots, the rows that it moves, and what is left out.
 
     Parameters
     ----------
     areas : collection of int, optional
         Whose dots are moved; all, if left out. Dots that lie in another area's part stay, and
-        so do those between a pattern's polygons or nearer to a line than they may be.
+        so do those between a pattern's polygons or nearer to a line than they may be, and those of
+        areas that their pattern misses.
     """
     dots, partition = drawing.dots, Partition(drawing.outlines())
     reference = drawing.reference
@@ -50,7 +51,7 @@ def relaxing(
     mine = partition.area_at(dots.position_mm) == dots.area
     if areas is not None:
         mine &= np.isin(dots.area, list(areas))
-    part_of_row, cut = _cut(drawing, partition, mine)
+    part_of_row, cut, notes = _cut(drawing, partition, mine)
     rows = np.flatnonzero(mine)
     some = dots if len(rows) == len(dots) else dots.take(rows)
     used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
@@ -58,23 +59,28 @@ def relaxing(
     parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
     if cut and reference is None and len(rows) < FEW * len(parts):
         style = replace(style, spacing="lloyd")
-    return Task(style, reference, RELAX, parts, standing, steps=steps), rows
+    return Task(style, reference, RELAX, parts, standing, steps=steps), rows, notes
 
 
 def _cut(
     drawing: Drawing, partition: Partition, mine: NDArray[np.bool_]
-) -> tuple[NDArray[np.int64], dict[int, Outline]]:
+) -> tuple[NDArray[np.int64], dict[int, Outline], tuple[str, ...]]:
     """Return each dot's area, or below 0 which polygon of one that patterns or lines cut.
 
-    Dots outside of all polygons are `mine` no longer.
+    Dots outside of all polygons are `mine` no longer, nor are those of areas that their patterns
+    miss; the last tells of these.
     """
     dots, cut = drawing.dots, dict[int, Outline]()
     owner = dots.area.astype(np.int64)
     if not (drawing.patterns or drawing.lines):
-        return owner, cut
-    for k in np.unique(owner[mine]).tolist():
-        whole = partition.part_of(k)
-        part = part_for_dots(drawing, k, whole)
+        return owner, cut, ()
+    wholes = {k: partition.part_of(k) for k in np.unique(owner[mine]).tolist()}
+    parts, notes = parts_met(drawing, wholes)
+    for k, whole in wholes.items():
+        if k not in parts:
+            mine[dots.area == k] = False
+            continue
+        part = parts[k]
         if part is whole:
             continue
         polygons = shapely.get_parts(part)
@@ -86,7 +92,7 @@ def _cut(
         mine[rows[found[0]]] = True
         owner[rows[found[0]]] = -(found[1] + len(cut) + 1)
         cut.update(enumerate(polygons.tolist(), start=len(cut) + 1))
-    return owner, cut
+    return owner, cut, notes
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -154,7 +154,7 @@ def test_relaxing_an_area_keeps_its_tone_and_leaves_it_alone_then() -> None:
     process_now(made, [1])
     drawing, others = made.drawing.snapshot(), state(made, (0, 2))
     for _ in range(2):
-        task, rows = relaxing(drawing, Style(), 20, [1])
+        task, rows, _ = relaxing(drawing, Style(), 20, [1])
         *_, last = run(task)
         drawing.dots.position_mm[rows] = last.position_mm
         drawing.dots.radius_mm[rows] = last.radius_mm

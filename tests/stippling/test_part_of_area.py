@@ -85,7 +85,7 @@ def test_relaxed_dots_stay_in_their_polygons():
     pattern = Pattern.over(0, builtin("cobbles"), (0, 0, 40, 30), 30.0)
     drawing = drawing_with(pattern)
     drawing.dots = Dots.round(np.random.default_rng(2).random((900, 2)) * (40, 30), 0.1)
-    task, rows = relaxing(drawing, Style(), 5)
+    task, rows, _ = relaxing(drawing, Style(), 5)
     cells = cells_of(drawing.outlines()[0], pattern).polygons
     tree, before = shapely.STRtree(cells), drawing.dots.position_mm[rows]
     assert 300 < len(rows) < 900  # those between stay
