@@ -64,6 +64,7 @@ def figures(quick: bool = False) -> list[Figure]:
                 results.append(Figure(label, value, "", *promised, key in _HIGHER))  # type: ignore[call-arg]
     results += [_rows_in_windows(name) for name in ("honey-bee.jpg", "ammonite.png")]
     results += _steps_of_the_wedge()
+    results += _very_pale()
     results += _from_chance()
     results += _after_many_steps()
     results += _relax_all(1 if quick else 10)
@@ -146,6 +147,22 @@ def _steps_of_the_wedge(n: int = 10_000) -> list[Figure]:
         Figure("wedge, within a step: min_rel", min(least), "", 0.40, 0.55, True, note),
         Figure("wedge, within a step: rel_nn_cv", max(variation), "", 0.13, 0.11, note=note),
     ]
+
+
+def _very_pale(n: int = 10_000) -> list[Figure]:
+    """Measure a picture of 2 to 12 percent of darkness, by both spacings."""
+    darkness = 0.02 + 0.1 * read_darkness(assets() / "samples" / "ammonite.png", 800)
+    reference = Reference(darkness.astype(np.float32), 800.0)
+    results = []
+    for spacing in ("even", "lloyd"):
+        *_, last = stages(reference, Style(n_dots=n, spacing=spacing), snapshots=False)
+        points, radii = np.array(last.position_mm), last.radius_mm.astype(np.float64)
+        scored = measure(points, radii, np.asarray(reference.darkness, np.float64))
+        results += [
+            Figure(f"very pale picture, {spacing}: {key}", scored[key], "")
+            for key in ("tone_rmse", "detail_rmse")
+        ]
+    return results
 
 
 def _from_chance(n: int = 10_000, steps: int = 20) -> list[Figure]:

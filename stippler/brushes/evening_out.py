@@ -83,12 +83,23 @@ def evened_out(document: Document, rows: Rows, by_tone: bool) -> Evened:
                 out.ink_mm2[mine], out.per_ink[mine] = spaced.ink_mm2, spaced.per_ink
             lacking = lacks(document, spaced.at_mm, spaced.reach_mm, around)
             beyond.append((spaced.at_mm[lacking], spaced.reach_mm[lacking]))
-        around = wider(*(np.concatenate(parts) for parts in zip(*beyond, strict=True)))
-        where = where if around is not None else where[:0]
+        if not beyond:
+            break
+        more = wider(*(np.concatenate(parts) for parts in zip(*beyond, strict=True)))
+        if more is None:
+            break
+        around = _both(around, more)  # it only grows, so that this comes to an end
     if by_tone and drawing.reference is not None:
         held = _beside(document, rows)
         out.moved_mm[held] = document.dots.position_mm[rows[held]]
     return out
+
+
+def _both(box: Box, other: Box) -> Box:
+    """Return the box around two."""
+    return (
+        min(box[0], other[0]), min(box[1], other[1]), max(box[2], other[2]), max(box[3], other[3]),
+    )  # fmt: skip
 
 
 def _beside(document: Document, rows: Rows) -> NDArray[np.bool_]:
