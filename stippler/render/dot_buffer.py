@@ -10,15 +10,22 @@ from stippler.drawing.dots import Dots, first_seeds
 from stippler.drawing.polarity import Polarity
 from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.shapes.dot_shape import check_shapes
-from stippler.kernels.tone.union_share import shares_of_union
 from stippler.render.paper import Origin
+from stippler.render.weighing import Weighing, shares_of
 
 _STRIDE = gpu_dots.N_WORDS * gpu_dots.WORD_BYTES
 _GAP = 256  # rows that stand still are uploaded too where that saves a call
+_AT_ONCE = 30_000  # dots whose shares take a frame little
 
 
 class DotBuffer:
     """One GL buffer with a row for each dot, grown by doubling.
+
+    Parameters
+    ----------
+    live : bool
+        Frames do not wait for the shares of many dots: they keep those that they had, until
+        `take_shares` finds the new ones done.
 
     Attributes
     ----------
@@ -35,13 +42,15 @@ class DotBuffer:
         At least as large as any dot's.
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+    def __init__(self, ctx: moderngl.Context, *, live: bool = False) -> None:
+        self._ctx, self._live = ctx, live
         self._room = 1024
         self._words = gpu_dots.words(self._room)
         self.gl = ctx.buffer(reserve=self._room * _STRIDE)
         self.n = self.revision = 0
         self._knows_shares = True
+        self._had_shares = False  # those that are there are of the same dots, before
+        self._weighing: Weighing | None = None
         self.polarity = Polarity()
         self._row_of_slot = self._slot_of_row = np.empty(0, np.int64)
         self._forget()
@@ -60,12 +69,15 @@ class DotBuffer:
             If a shape lies outside its range.
         """
         check_shapes(dots.elongation, dots.angle_rad, dots.roughness)
+        before = self._shares_by_row() if len(dots) == self.n else None
         self._resize(len(dots))
         self._order(dots.position_mm, origin_mm)
         self._pack(dots, origin_mm, selected, self._row_of_slot, self.rows)
+        if before is not None:
+            gpu_dots.set_shares(self.rows, before[self._row_of_slot])
         self._forget()
         self.has_flags = bool(dots.fixed.any() or selected.any())
-        self._knows_shares = False
+        self._weigh_anew(later=before is not None)
         self._learn(dots.radius_mm, dots.elongation, dots.roughness)
         self._upload()
 
@@ -88,7 +100,10 @@ class DotBuffer:
         rows = self._row_of_slot
         gpu_dots.pack_places(position_mm, radius_mm, origin_mm, rows, self.rows)
         self.max_radius_mm = float(radius_mm.max(initial=0.0))
-        self._knows_shares = not settled
+        if settled:
+            self._weigh_anew(later=same)
+        else:
+            self._knows_shares, self._weighing = True, None
         self._upload()
 
     def update(
@@ -116,6 +131,8 @@ class DotBuffer:
         self._pack(dots, origin_mm, selected, changed, fresh)
         self.has_flags = self.has_flags or bool((dots.is_fixed(rows) | selected[rows]).any())
         self._words[slots] = fresh
+        if self._weighing is not None:
+            self._weighing.note_change(slots)
         self._learn(dots.radius_mm[rows], dots.elongation[rows], dots.roughness[rows])
         self._upload_runs(slots)
 
@@ -127,23 +144,40 @@ class DotBuffer:
         """
         if self._knows_shares:
             return
-        self._knows_shares = True
-        shares = self._shares()
-        if self.n and shares.min() < 1.0:
+        if not self._had_shares:
+            self._knows_shares = True
+            self._write_shares(shares_of(self.rows, is_plain=self.polarity.is_plain))
+        elif self._weighing is None:
+            self._weighing = Weighing(self.rows, is_plain=self.polarity.is_plain)
+
+    @property
+    def is_weighing(self) -> bool:
+        """Whether dots still have the shares of before."""
+        return self._weighing is not None
+
+    def take_shares(self) -> bool:
+        """Upload the shares that are being found, if they are; return whether it is so."""
+        if self._weighing is None or not self._weighing.is_done:
+            return False
+        weighing, self._weighing, self._knows_shares = self._weighing, None, True
+        self._write_shares(weighing.shares(self.n))
+        return True
+
+    def _weigh_anew(self, *, later: bool) -> None:
+        """Let shares be found when they are asked for: at once, or later beside the frames."""
+        self._knows_shares, self._weighing = False, None
+        self._had_shares = later and self._live and self.n > _AT_ONCE
+
+    def _shares_by_row(self) -> NDArray[np.float32] | None:
+        """Return the shares that dots have, in the drawing's order, if they are to be kept."""
+        if not self._live or self.n <= _AT_ONCE:
+            return None
+        return gpu_dots.shares_in(self.rows)[self._slot_of_row]
+
+    def _write_shares(self, shares: NDArray[np.float32]) -> None:
+        if self.n and (shares.min() < 1.0 or self._had_shares):
             gpu_dots.set_shares(self.rows, shares)
             self._upload()
-
-    def _shares(self) -> NDArray[np.float32]:
-        """Return what each dot adds to the union of all that are painted as it is."""
-        discs = self.rows.view(np.float32)
-        if self.polarity.is_plain:
-            return shares_of_union(discs)
-        shares = np.ones(self.n, np.float32)
-        kind = gpu_dots.flags_of(self.rows) & (gpu_dots.IN_WHITE | gpu_dots.UNSEEN)
-        for seen in (0, gpu_dots.IN_WHITE):
-            which = np.flatnonzero(kind == seen)
-            shares[which] = shares_of_union(discs[which])
-        return shares
 
     def _pack(
         self,

@@ -22,15 +22,20 @@ class Renderer:
     Each pass sets all the GL state it needs, so other code may draw into the same context before
     and after; what a frame shows stands in its `Frame`, and in nothing that is left behind.
 
+    Parameters
+    ----------
+    live : bool
+        For a window, whose frames do not wait for the shares of many dots.
+
     Attributes
     ----------
     scene : Scene
         What is drawn; it owns the buffers.
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, *, live: bool = False) -> None:
         self._ctx = ctx
-        self.scene = Scene(ctx)
+        self.scene = Scene(ctx, live=live)
         self._paper = PaperPass(ctx)
         self._reference = ReferencePass(ctx)
         self._lines = LinesPass(ctx)

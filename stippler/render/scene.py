@@ -30,6 +30,11 @@ _NO_IDS: NDArray[np.int64] = np.empty(0, np.int64)
 class Scene:
     """Page, lines, dots and reference on the GPU.
 
+    Parameters
+    ----------
+    live : bool
+        For a window, whose frames do not wait for the shares of many dots.
+
     Attributes
     ----------
     page_mm : (width, height)
@@ -40,9 +45,9 @@ class Scene:
     reference : ReferenceTexture
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, *, live: bool = False) -> None:
         self.page_mm = (1.0, 1.0)
-        self.dots = DotBuffer(ctx)
+        self.dots = DotBuffer(ctx, live=live)
         self.lines = LineBuffer(ctx)
         self.grounds = GroundBuffer(ctx)
         self.reference = ReferenceTexture(ctx)

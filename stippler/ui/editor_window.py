@@ -62,6 +62,7 @@ from stippler.ui.window.window import Window
 _CURSORS = {"hand": imgui.MouseCursor_.resize_all, "turn": imgui.MouseCursor_.hand}
 _CARET_S = 0.4  # a text field's caret blinks
 _MINIMISED_S = 0.25
+_WEIGHING_S = 0.02  # how often it is asked whether overlaps are known
 _ANSWER_S = 0.1  # how often a system dialog is looked at
 _REST_FRAMES = 2  # of the panels, until what one part of a batch has opened is there for the next
 
@@ -177,7 +178,7 @@ class Editor:
     @property
     def idle(self) -> bool:
         """Whether all that has happened so far has been drawn."""
-        return self._schedule.idle
+        return self._schedule.idle and not self.canvas.is_weighing
 
     def step(self) -> bool:
         """Take what has happened; draw a frame if it is time for one, and say whether."""
@@ -438,6 +439,8 @@ class Editor:
             self._schedule.wake_at(now + rest_s)
         if self.canvas.map_is_late:
             self._schedule.wake_at(now + MAP_EVERY_S)
+        if self.canvas.is_weighing:
+            self._schedule.wake_at(now + _WEIGHING_S)
         for at_s in self._keeper.keep_soon(now):
             self._schedule.wake_at(at_s)
         if self.popups.dialogs.waiting or self.session.exporting:

@@ -131,6 +131,11 @@ def set_shares(words: NDArray[np.uint32], shares: NDArray[np.float32]) -> None:
     words[:, 4] = words[:, 4] & np.uint32(0xFFFFFF) | share
 
 
+def shares_in(words: NDArray[np.uint32]) -> NDArray[np.float32]:
+    """Return the shares of packed dots, 0 to 1."""
+    return (words[:, 4] >> np.uint32(24)).astype(np.float32) / np.float32(255.0)
+
+
 def words(n: int) -> NDArray[np.uint32]:
     """Return room for n dots."""
     return np.empty((n, N_WORDS), np.uint32)

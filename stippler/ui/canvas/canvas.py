@@ -64,6 +64,7 @@ class Canvas:
         self._map_size_px: Size = (1, 1)
         self._map_drawn_s = -math.inf
         self._map_late = False
+        self._n_weighed = 0  # how often dots have got other shares after they were drawn
         self.n_drawn = self.n_lens_drawn = 0
 
     def show(
@@ -105,6 +106,11 @@ class Canvas:
         """Whether the navigator shows the page as it was."""
         return self._map_late
 
+    @property
+    def is_weighing(self) -> bool:
+        """Whether the page is to be drawn once more, with the overlaps of dots as they are."""
+        return self._made is not None and self._made.scene.dots.is_weighing
+
     def show_lens(self, area: Rect, glass: Glass, scale: float, ratio: float) -> None:
         """Put a lens over the picture for this frame; `draw` fills it in.
 
@@ -143,7 +149,9 @@ class Canvas:
         """
         if self._target is None or self._texture is None:
             return False
-        content = _content(session, selection, solo)
+        if self._made is not None:
+            self._n_weighed += self._made.scene.dots.take_shares()
+        content = (_content(session, selection, solo), self._n_weighed)
         frame = _frame(camera, self._texture.size, look, session)
         whole = preview if preview is None or preview.footprint is None else None
         page = (content, replace(frame, preview=whole))
@@ -228,7 +236,7 @@ class Canvas:
         if self._made is None:
             from stippler.render.renderer import Renderer
 
-            self._made = Renderer(self._ctx)
+            self._made = Renderer(self._ctx, live=True)
         return self._made
 
     def _upload(
