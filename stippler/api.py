@@ -163,7 +163,8 @@ def process(
         Ids or names of areas. They are made one after the other; their fixed dots stay.
     style : Style or str, optional
         For these areas from now on; left out, each keeps its own. What is given beside it counts
-        before it. Areas of one style share its number of dots, by their ink.
+        before it. Areas of one style share its number of dots, by their ink. A border that is
+        given is the areas' own: it alone gives them no other style.
     {keywords}
 
     Returns
@@ -219,7 +220,12 @@ def _area_id(drawing: _Drawing, area: int | str) -> int:
 def _restyle(
     drawing: _Drawing, ids: list[int], style: Style | str | None, keywords: dict[str, Any]
 ) -> None:
-    """Give areas a style of their own."""
+    """Give areas a style of their own, and a border beside it."""
+    if (border := keywords.pop("border", None)) is not None:
+        for k in ids:
+            drawing.areas[k] = replace(drawing.areas[k], border=border)
+    if style is None and not keywords:
+        return
     made = {k: Style.of(_style(style) or drawing.style_of(k), **keywords) for k in ids}
     for k, one in made.items():
         i = drawing.first_free(STYLE)

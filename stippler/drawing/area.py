@@ -10,6 +10,7 @@ from typing import Any, Self
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.style import AS_STYLE, BORDERS
 from stippler.errors import GeometryError, ParameterError
 
 PAGE_AREA = 0
@@ -37,6 +38,8 @@ class Area:
         Its dots are neither drawn nor exported.
     rank : int
         Its place in the list: the largest is at the top; of equal ones the newest.
+    border : str
+        What its border is to its dots, as `BORDERS` has it; `AS_STYLE` leaves that to its style.
     """
 
     name: str
@@ -46,9 +49,14 @@ class Area:
     locked: bool = False
     hidden: bool = False
     rank: int = 0
+    border: str = AS_STYLE
 
     def __post_init__(self) -> None:
         checked_colour(self.colour, "area")
+        if self.border not in (AS_STYLE, *BORDERS):
+            raise ParameterError(
+                f"{self.border!r} is unknown", "border of an area", f"of {', '.join(BORDERS)}"
+            )
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""

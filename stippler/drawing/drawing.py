@@ -80,6 +80,10 @@ class Drawing:
         """Return the style of an area."""
         return self.styles[self.areas[area].style]
 
+    def border_of(self, area: int) -> str:
+        """Return what an area's border is to its dots: as it says itself, or else its style."""
+        return self.areas[area].border or self.style_of(area).border
+
     def outlines(self) -> dict[int, Polygon | MultiPolygon]:
         """Return the outlines of all areas in mm, from the lowest to the uppermost."""
         return {i: self.areas[i].outline_mm for i in sorted(self.areas)}

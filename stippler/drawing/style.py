@@ -53,12 +53,15 @@ _JITTERS = (
     Choice("cell", "Cell", "By each dot's own cell: dots in the dark move less."),
 )
 AUTOMATIC, WALL, THROUGH, BLEED = "automatic", "wall", "through", "bleed"
+AS_STYLE = ""
+"""What the border of an area is that leaves it to its style."""
+
 _BORDERS = (
     Choice(AUTOMATIC, "Automatic", "Dots run off the page's edge; other borders are walls."),
     Choice(WALL, "Wall", "Dots line up along the border, at the page's edge too."),
     Choice(
         THROUGH, "Through",
-        "Neighbours of this style that are processed together are drawn as one, without a seam.",
+        "Neighbours of one style that are processed together are drawn as one, without a seam.",
     ),
     Choice(BLEED, "Bleed", "Dots run off all of the border, as off the edge of a page."),
 )  # fmt: skip
@@ -188,7 +191,8 @@ class Style:
         "ground of ink.", choices=_POLARITIES, is_more=True,
     )  # fmt: skip
     border: str = parameter(
-        Kind.CHOICE, AUTOMATIC, "Border", "What its border is to the dots of an area.",
+        Kind.CHOICE, AUTOMATIC, "Border", "What its border is to the dots of an area that "
+        "says nothing else itself.",
         choices=_BORDERS, is_more=True,
     )  # fmt: skip
     name: str = ""
@@ -300,6 +304,7 @@ def parameter_of(name: str) -> Parameter:
 FIRST_DOTS = parameter_of("first_dots").values
 GROWTHS = parameter_of("growth").values
 STARTS = parameter_of("start").values
+BORDERS = parameter_of("border").values
 RELAXATIONS = ("even", "lloyd", "delaunay-mean", "springs")
 """Those spacings that even dots out; the others set them where they stay."""
 

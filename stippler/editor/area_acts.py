@@ -340,16 +340,8 @@ class AreaActs:
         self._set("Style of areas", {k: {"style": style} for k in ids})
 
     def set_border(self, ids: Iterable[int], border: str) -> None:
-        """Say what borders are to the dots of areas, for all areas of their styles."""
-        document = self.document
-        if document is None:
-            return
-        drawing = document.drawing
-        document.begin("Border of areas")
-        for i in {drawing.areas[k].style for k in ids if k in drawing.areas}:
-            document.set(records.STYLE, i, replace(drawing.styles[i], border=border))
-        document.commit()
-        self.session.edit_style(border=drawing.style_of(PAGE_AREA).border)
+        """Say what the borders of areas are to their dots; `AS_STYLE` leaves it to their styles."""
+        self._set("Border of areas", {k: {"border": border} for k in ids})
 
     def move_to(self, k: int, place: int) -> None:
         """Give an area another place in the list, counted from its top."""

@@ -138,7 +138,7 @@ def joined(drawing: Drawing, areas: Sequence[int], partition: Partition) -> list
     a pattern is drawn by itself.
     """
     group = {k: k for k in areas}
-    seeing = [k for k in areas if k in drawing.areas and drawing.style_of(k).border == THROUGH]
+    seeing = [k for k in areas if k in drawing.areas and drawing.border_of(k) == THROUGH]
     seeing = [k for k in seeing if pattern_of(drawing, k) is None]
     for i, k in enumerate(seeing):
         for other in seeing[i + 1 :]:
@@ -203,6 +203,7 @@ def stippling(
     if len(fixed):
         standing = Standing(dots.position_mm[fixed], dots.radius_mm[fixed])
     style = _with_own_number(drawing, partition, areas, part, reference)
+    style = replace(style, border=drawing.border_of(areas[0]))
     whole = drawing.page.width_mm * drawing.page.height_mm
     cut = part_for_dots(drawing, areas[0], part)
     is_page = PAGE_AREA in areas and cut is part and part.area >= (1.0 - _WHOLE) * whole

@@ -1,5 +1,7 @@
 """Automatic, wall, through and bleed: what borders are to the dots of an area."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -9,11 +11,13 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import KDTree
 from shapely.geometry import LineString, Point, Polygon, box
 
+import stippler
 from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.errors import ParameterError
 from stippler.jobs.processing import process_now, tasks_of
 from stippler.kernels.machine import pool
 from stippler.stippling.borders import Borders
@@ -163,6 +167,30 @@ def test_only_like_areas_that_touch_see_through():
     drawing.areas[4] = Area("corner", box(48, 10, 50, 12), 1)
     groups = [task.areas for task in tasks_of(Document(drawing), [3, 1, 2, 4, 0])]
     assert groups == [(3,), (1, 0), (2,), (4,)]
+
+
+def test_the_border_of_an_area_counts_before_its_styles():
+    drawing = split("automatic").drawing
+    drawing.areas[1] = Area("right", RIGHT, 0, border="wall")
+    assert [drawing.border_of(k) for k in (0, 1)] == ["automatic", "wall"]
+    tasks = tasks_of(Document(drawing), [0, 1])
+    assert [task.task.style.border for task in tasks] == ["automatic", "wall"]
+    for k in (0, 1):
+        drawing.areas[k] = replace(drawing.areas[k], border="through")
+    assert [task.areas for task in tasks_of(Document(drawing), [0, 1])] == [(0, 1)]
+    with pytest.raises(ParameterError, match="of automatic, wall, through, bleed"):
+        Area("right", RIGHT, border="open")
+
+
+def test_a_border_given_to_process_is_the_areas_own():
+    drawing = stippler.process(split("automatic", 1500).drawing, [0, 1])
+    one = stippler.process(drawing, "right", border="bleed", iterations=3)
+    assert (one.areas[1].border, one.areas[0].border) == ("bleed", "")
+    assert one.style_of(1).iterations == 3
+    two = stippler.process(drawing, "right", border="wall")
+    assert (two.areas[1].style, two.border_of(1)) == (0, "wall")
+    edge = [np.count_nonzero(d.dots.position_mm[:, 0] > W - 0.2) for d in (drawing, one, two)]
+    assert edge[2] == 0 < min(edge[:2])
 
 
 @pytest.mark.parametrize("border", ["automatic", "bleed"])

@@ -34,11 +34,12 @@ def test_a_border_is_seen_through_by_hand(halves, tmp_path):
     host.type("border through")
     host.key("enter")
     host.settle()
-    assert document.drawing.style_of(0).border == document.drawing.style_of(1).border == "through"
-    assert session.style.border == "through"
+    assert [document.drawing.border_of(k) for k in (0, 1)] == ["through", "automatic"]
+    assert session.style.border == document.drawing.style_of(0).border == "automatic"
     document.undo()
-    assert document.drawing.style_of(1).border == "automatic"
+    assert document.drawing.border_of(0) == "automatic"
     document.redo()
+    acts.set_border((1,), "through")
     acts.choice.choose((0, 1))
     acts.process()
     host.until(lambda: not session.busy, "the dots")
@@ -48,4 +49,7 @@ def test_a_border_is_seen_through_by_hand(halves, tmp_path):
     path = tmp_path / "halves.stipple"
     session.save(path)
     host.until(lambda: path.exists() and not session.exporting, "the file")
-    assert stippler.open(path).styles[0].border == "through"
+    again = stippler.open(path)
+    assert [again.areas[k].border for k in (0, 1)] == ["through", "through"]
+    acts.set_border((0, 1), "")
+    assert [document.drawing.border_of(k) for k in (0, 1)] == ["automatic", "automatic"]
