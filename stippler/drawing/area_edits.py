@@ -13,6 +13,7 @@ from stippler.drawing import records
 from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.one_step import as_one_step
 from stippler.drawing.partition import Outline
 from stippler.drawing.planar.edits import Outcome, touched
 from stippler.drawing.planar.path import Path
@@ -107,15 +108,13 @@ def edit_areas(
     before = current_map(document)
     outcome = edit(before)
     refuse_locked(document.drawing, before, outcome.map)
-    document.begin(label)
-    try:
+
+    def act(document: Document) -> None:
         _take(document, before, outcome, style, names or {})
         if also is not None:
             also(outcome)
-    except BaseException:
-        document.cancel()
-        raise
-    document.commit()
+
+    as_one_step(document, label, act)
     _last[document] = outcome.map
     return outcome
 

@@ -217,6 +217,8 @@ class Toolbox:
             self.state = before.take(event, desk)
         except BaseException:
             before.cancel(desk)
+            if document.in_stroke:  # that it has begun, or left open
+                document.cancel()
             self.state = RESTING
             raise
         match event:
