@@ -70,7 +70,7 @@ class Keeping:
                 f"{path.name} is open in another window; what is saved last replaces the other",
                 WARNING,
             )
-        document.follow(self._take)
+        document.follow(lambda entry: self._take(document, entry))
         self._begin()
 
     def saved(self, path: Path) -> None:
@@ -120,6 +120,6 @@ class Keeping:
         self._keeper.begin(lambda: members_of(start), self._name, self._path, PROGRAM)
         self._log = EditLog(self._keeper.append, self._document)
 
-    def _take(self, entry: Entry) -> None:
-        if self._log is not None:
+    def _take(self, document: Document, entry: Entry) -> None:
+        if self._log is not None and document is self._document:  # not one that was open before
             self._log.take(entry)
