@@ -346,7 +346,10 @@ class Soak:
         if self.app.session.document is not None:
             self.n_steps += len(self.app.session.document.history.steps)
         self.app.session.new(Page(100.0, 70.0))
+        glfw.set_window_size(self.app.window._handle, *_SIZE)  # its pixels are memory here, too
         self._wait()
+        for _ in range(3):
+            self.app.step(0.0)
         gc.collect()
         self.memory_mb.append(_memory_mb())
 

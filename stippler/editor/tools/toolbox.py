@@ -78,6 +78,7 @@ class Toolbox:
         self.lines = ChosenLines()
         self.areas = AreaChoice()
         self.state: ToolState = RESTING
+        self._desk: Desk | None = None  # of what is held
         self.mods = NO_MODS
         self._n_strokes = seed
         self._from: Point | None = None  # where the pointer was when its heading was last looked at
@@ -93,7 +94,7 @@ class Toolbox:
         """
         tool = self.made(name) if name else None
         if tool is not self.tool:
-            self.state = RESTING
+            self._take_back()
             if self.tool is not None:
                 self.tool.put_away()
         elif isinstance(tool, BrushTool):
@@ -212,12 +213,12 @@ class Toolbox:
         try:
             if before is RESTING:
                 begun = self.tool.begin(event, desk)
-                self.state = RESTING if begun is None else begun
+                self._hold(RESTING if begun is None else begun, desk)
                 return begun is not None
-            self.state = before.take(event, desk)
+            self._hold(before.take(event, desk), desk)
         except BaseException:
             before.cancel(desk)
-            self.state = RESTING
+            self._hold(RESTING, desk)
             raise
         match event:
             case Pressed(button=button) | Released(button=button):
@@ -238,14 +239,24 @@ class Toolbox:
             try:
                 self.state.rest(t_s)  # type: ignore[attr-defined]
             except BaseException:
-                self.state = RESTING
+                self._take_back()
                 raise
+
+    def _hold(self, state: ToolState, desk: Desk) -> None:
+        self.state, self._desk = state, None if state is RESTING else desk
+
+    def _take_back(self) -> None:
+        """Give up what is held, and what it has begun."""
+        state, desk = self.state, self._desk
+        self.state, self._desk = RESTING, None
+        if desk is not None:
+            state.cancel(desk)
 
     def drop(self, document: Document | None) -> None:
         """Give up what is held, and the selection: another drawing is open now."""
         if document is not None and self.is_busy:
             self.state.cancel(self.desk(document, lambda x, y: (x, y), 1.0))
-        self.state = RESTING
+        self.state, self._desk = RESTING, None
         for tool in self._made.values():
             tool.forget()
         self.selection.forget()
