@@ -93,9 +93,12 @@ class Keeping:
         if keeper.problem is not None and self._failed_s is None:
             self._failed_s = now
             self._messages.say(str(keeper.problem), ERROR, keeper.problem)
+        elif self._failed_s is not None and keeper.is_on_disk:
+            self._failed_s = None
+            self._messages.say("edits are kept for recovery again", INFO)
         elif self._failed_s is not None and now - self._failed_s >= RETRY_S:
+            self._failed_s = now
             self._begin()
-            self._failed_s = None if self._keeper_is_fine() else now
 
     def close(self) -> None:
         """Forget what was kept: the drawing is closed, or saved, as a person wished."""
@@ -103,12 +106,6 @@ class Keeping:
             self._keeper.forget()
         self._document = self._keeper = self._log = self._lost = None
         self._failed_s = None
-
-    def _keeper_is_fine(self) -> bool:
-        fine = self._keeper is not None and self._keeper.problem is None
-        if fine:
-            self._messages.say("edits are kept for recovery again", INFO)
-        return fine
 
     def _begin(self) -> None:
         """Keep the drawing as it is now."""
