@@ -348,13 +348,18 @@ class Soak:
         self.app.session.new(Page(100.0, 70.0))
         glfw.set_window_size(self.app.window._handle, *_SIZE)  # its pixels are memory here, too
         self._wait()
-        for _ in range(3):
-            self.app.step(0.0)
+        self._show()
         gc.collect()
         self.memory_mb.append(_memory_mb())
 
     def _wait(self) -> None:
         while self.app.session.busy:
+            self.app.step(0.02)
+
+    def _show(self) -> None:
+        """Draw what there is: until then the page and its tools are those of the drawing before."""
+        self.app.step(0.0)
+        while not self.app.editor.idle:
             self.app.step(0.02)
 
     def close(self) -> None:

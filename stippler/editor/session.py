@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.area import PAGE_AREA
+from stippler.drawing.one_step import as_one_step
 from stippler.editor import processing
 from stippler.editor.activity import (
     Filling,
@@ -197,9 +198,7 @@ class Session(SessionState):
         from stippler.editor.line_edits import spread_held
 
         if (document.dots.constraint == ON_CURVE).any():
-            document.begin("Spread dots on lines")
-            spread_held(document)
-            document.commit()
+            as_one_step(document, "Spread dots on lines", spread_held)
 
     def take_over(self) -> bool:
         """Let a person edit the dots of a draft that is being relaxed: it is adopted as it is.

@@ -25,16 +25,18 @@ def tasks_of(document: Document, areas: Sequence[int]) -> list[AreaTask]:
     ParameterError, GeometryError
         If an area cannot be stippled.
     """
-    from stippler.stippling.tasks import box_around, joined, part_of_all, stippling
+    from stippler.stippling.border_policies import BorderPolicies, part_of_all
+    from stippler.stippling.tasks import box_around, stippling
 
     drawing, partition = document.drawing, document.partition
+    policies = BorderPolicies(drawing, partition)
     tasks = []
-    for group in joined(drawing, areas, partition):
+    for group in policies.joined(areas):
         near = None
         if all(k in drawing.areas for k in group):
             part = part_of_all(partition, group)
             near = None if part.is_empty else document.in_box(box_around(part))
-        tasks.append(stippling(drawing, group, partition, near))
+        tasks.append(stippling(drawing, group, partition, near, policies))
     return tasks
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.stippling.border_policies import Pieces
 from stippler.stippling.borders import Borders, along_line
 from stippler.stippling.ground import AreaGround, Floats, Ground
 from stippler.stippling.page_raster import (
@@ -26,7 +27,12 @@ _BAND, _CELLS = 3.0, 6.0  # mean spacings; dots beside the line, and those that 
 
 
 def area_ground(
-    reference: Reference, style: Style, outline_mm: Outline, *, bleeds: bool = True
+    reference: Reference,
+    style: Style,
+    outline_mm: Outline,
+    pieces_mm: Pieces = (),
+    *,
+    bleeds: bool = True,
 ) -> AreaGround:
     """Return what an area's dots are laid out on; wider than itself where its border bleeds.
 
@@ -37,7 +43,7 @@ def area_ground(
     if not (bleeds and style.weighted and style.is_relaxed and style.sizes == "tone"):
         return own
     size_mm = (reference.width_mm, reference.height_mm)
-    borders = Borders.of(outline_mm, style.border, size_mm)
+    borders = Borders.of(outline_mm, style.border, size_mm, pieces_mm)
     if not borders.bleeding:
         return own
     raster = own.raster

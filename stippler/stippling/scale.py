@@ -105,11 +105,12 @@ def scaled_dots(
 
 def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     """Return a drawing at another size: page, areas, lines, patterns, reference and dots."""
+    from stippler.drawing.area_edits import with_policies_of
     from stippler.drawing.drawing import Page
     from stippler.drawing.partition import Partition
     from stippler.stippling.part_of_area import parts_met
 
-    f = scaling.factor
+    f, original = scaling.factor, drawing
     reference = drawing.reference
     if reference is not None:
         reference = Reference.of(reference.source, reference.width_mm * f, reference.adjustment)
@@ -127,6 +128,7 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
             patterns={k: _scaled_pattern(p, f) for k, p in drawing.patterns.items()},
             borders={},  # made anew from the outlines, on the grid
         )
+        drawing = with_policies_of(original, drawing, f)
     before = drawing.dots
     toned: frozenset[int] = frozenset()
     if reference is not None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-    from shapely.geometry import MultiPolygon, Polygon
+    from shapely.geometry import MultiLineString, MultiPolygon, Polygon
 
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
@@ -62,6 +62,8 @@ class Task:
         How many to take; None is as many as the style says.
     neighbours_mm : (m, 2) float64 or None
         Dots beyond the border, from which new ones keep their distance.
+    pieces_mm : tuple of (policy, MultiLineString)
+        Pieces of the border that are to dots something else than the style says.
     """
 
     style: Style
@@ -72,3 +74,4 @@ class Task:
     n_done: int = 0
     steps: int | None = None
     neighbours_mm: NDArray[np.float64] | None = None
+    pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()

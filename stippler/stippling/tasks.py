@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import MultiPolygon
 
 from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import THROUGH, Style
+from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met, pattern_of
+from stippler.stippling.border_policies import BorderPolicies
+from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
 from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
@@ -131,38 +131,16 @@ class AreaTask:
         return tuple(found)
 
 
-def joined(drawing: Drawing, areas: Sequence[int], partition: Partition) -> list[tuple[int, ...]]:
-    """Return which of some areas are drawn as one, each group where its first area is.
-
-    Those of one style are that touch along a line and see through their borders; an area under
-    a pattern is drawn by itself.
-    """
-    group = {k: k for k in areas}
-    seeing = [k for k in areas if k in drawing.areas and drawing.border_of(k) == THROUGH]
-    seeing = [k for k in seeing if pattern_of(drawing, k) is None]
-    for i, k in enumerate(seeing):
-        for other in seeing[i + 1 :]:
-            if drawing.areas[k].style != drawing.areas[other].style:
-                continue
-            shared = shapely.intersection(partition.part_of(k), partition.part_of(other))
-            if shared.length > 0.0 and group[k] != group[other]:
-                old, new = group[other], group[k]
-                group = {j: new if g == old else g for j, g in group.items()}
-    found: dict[int, list[int]] = {}
-    for k in areas:
-        found.setdefault(group[k], []).append(k)
-    return [tuple(ids) for ids in found.values()]
-
-
 def stippling(
     drawing: Drawing,
     area: int | tuple[int, ...],
     partition: Partition | None = None,
     near: Rows | None = None,
+    policies: BorderPolicies | None = None,
 ) -> AreaTask:
     """Return the task of stippling an area of a drawing anew, in its style.
 
-    Several, as `joined` tells them, are one outline; the style is that of the first.
+    Several, as `BorderPolicies.joined` tells them, are one outline; the style is that of the first.
 
     Its fixed dots stay, and new ones keep clear of those beyond its border. A number of dots is
     shared by all areas of the style, by their ink.
@@ -173,6 +151,8 @@ def stippling(
         Of the drawing, if it is known.
     near : rows, optional
         All dots that lie in the `box_around` the area.
+    policies : BorderPolicies, optional
+        Of the drawing's borders, if they are known.
 
     Raises
     ------
@@ -189,7 +169,8 @@ def stippling(
     if reference is None:
         raise ParameterError("there is no picture to stipple from", "area", "fill it with dots")
     partition = partition or Partition(drawing.outlines())
-    part = part_of_all(partition, areas)
+    policies = policies or BorderPolicies(drawing, partition)
+    part = policies.part_of_all(areas)
     if part.is_empty:
         raise GeometryError("lies under others", f"area {areas[0]}", "give it room of its own")
     dots = drawing.dots
@@ -203,23 +184,15 @@ def stippling(
     if len(fixed):
         standing = Standing(dots.position_mm[fixed], dots.radius_mm[fixed])
     style = _with_own_number(drawing, partition, areas, part, reference)
-    style = replace(style, border=drawing.border_of(areas[0]))
+    style, pieces = replace(style, border=drawing.border_of(areas[0])), policies.own_of(areas)
     whole = drawing.page.width_mm * drawing.page.height_mm
     cut = part_for_dots(drawing, areas[0], part)
     is_page = PAGE_AREA in areas and cut is part and part.area >= (1.0 - _WHOLE) * whole
+    is_page &= not pieces
     parts = () if is_page else (cut,)
     task = Task(style, reference, parts_mm=parts, standing=standing,
-                neighbours_mm=dots.position_mm[others])  # fmt: skip
+                neighbours_mm=dots.position_mm[others], pieces_mm=pieces)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], partition)
-
-
-def part_of_all(partition: Partition, areas: Sequence[int]) -> Outline:
-    """Return what several areas own together."""
-    if len(areas) == 1:
-        return partition.part_of(areas[0])
-    parts = shapely.get_parts(shapely.union_all([partition.part_of(k) for k in areas]))
-    polygons = parts[shapely.get_type_id(parts) == 3]
-    return polygons[0] if len(polygons) == 1 else MultiPolygon(polygons.tolist())
 
 
 def box_around(part: Outline) -> tuple[float, float, float, float]:

@@ -78,7 +78,7 @@ class Toolbox:
         self.lines = ChosenLines()
         self.areas = AreaChoice()
         self.state: ToolState = RESTING
-        self._desk: Desk | None = None  # of what is held
+        self._desk: Desk | None = None  # of the last event
         self.mods = NO_MODS
         self._n_strokes = seed
         self._from: Point | None = None  # where the pointer was when its heading was last looked at
@@ -90,16 +90,28 @@ class Toolbox:
     def choose(self, name: str) -> None:
         """Take a tool by its name, or the next brush of its type; an empty name puts it away.
 
-        With the old one goes what it holds open.
+        With the old one goes what it holds open; a stroke in progress ends as it is.
         """
         tool = self.made(name) if name else None
         if tool is not self.tool:
-            self._take_back()
+            self._end_stroke()
+            self.state = RESTING
             if self.tool is not None:
                 self.tool.put_away()
         elif isinstance(tool, BrushTool):
             self.shelf.use_next(tool.kind.name)
         self.tool = tool
+
+    def _end_stroke(self) -> None:
+        """End the stroke in progress, if there is one, as if its button had come up."""
+        desk = self._desk
+        if desk is None or not self.is_busy or not desk.document.in_stroke:
+            return
+        try:
+            self.state.take(FocusLost(), desk)
+        finally:
+            if desk.document.in_stroke:  # not one that can end early
+                desk.document.cancel()
 
     def made(self, name: str) -> Tool:
         """Return a tool by its name; it is made when it is first asked for."""
@@ -206,19 +218,21 @@ class Toolbox:
         self._note_mods(event)
         if self.tool is None:
             return False
-        desk = self.desk(document, page, px_per_mm)
+        desk = self._desk = self.desk(document, page, px_per_mm)
         if isinstance(event, Moved):
             self._head(page(event.x_px, event.y_px), px_per_mm)
         before = self.state
         try:
             if before is RESTING:
                 begun = self.tool.begin(event, desk)
-                self._hold(RESTING if begun is None else begun, desk)
+                self.state = RESTING if begun is None else begun
                 return begun is not None
-            self._hold(before.take(event, desk), desk)
+            self.state = before.take(event, desk)
         except BaseException:
             before.cancel(desk)
-            self._hold(RESTING, desk)
+            if document.in_stroke:  # that it has begun, or left open
+                document.cancel()
+            self.state = RESTING
             raise
         match event:
             case Pressed(button=button) | Released(button=button):
@@ -239,18 +253,8 @@ class Toolbox:
             try:
                 self.state.rest(t_s)  # type: ignore[attr-defined]
             except BaseException:
-                self._take_back()
+                self.state = RESTING
                 raise
-
-    def _hold(self, state: ToolState, desk: Desk) -> None:
-        self.state, self._desk = state, None if state is RESTING else desk
-
-    def _take_back(self) -> None:
-        """Give up what is held, and what it has begun."""
-        state, desk = self.state, self._desk
-        self.state, self._desk = RESTING, None
-        if desk is not None:
-            state.cancel(desk)
 
     def drop(self, document: Document | None) -> None:
         """Give up what is held, and the selection: another drawing is open now."""
