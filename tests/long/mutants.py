@@ -8,7 +8,8 @@
 
 Each fault (`tests.long.faults`) is judged in a process of its own by the tests that go through its
 lines, quickest first, until one fails. A fault that runs out of time or memory is noticed. What is
-known stays in FILE and FILE.tests, so that a run can go on.
+known stays in FILE and FILE.tests, so that a run can go on, on another day too: a fault counts as
+judged as long as the function that it lies in stays as it is. `tests/long/judged.jsonl` is a FILE.
 """
 
 from __future__ import annotations
@@ -53,12 +54,12 @@ def main(words: Sequence[str]) -> None:
         _keep_baseline(file)
     elif what == "run":
         seed = int(words[3]) if len(words) > 3 else 1
-        done = {(r["path"], r["number"]) for r in _results(file)}
+        done = {r["key"] for r in _results(file)}
         chosen = random.Random(seed).sample(all_faults(), int(words[2]))
-        _judge_all([f for f in chosen if (f.path, f.number) not in done], file)
+        _judge_all([f for f in chosen if f.key not in done], file)
     elif what == "again":
-        alive = {(r["path"], r["number"]) for r in _results(file) if r["end"] != "noticed"}
-        _judge_all([f for f in all_faults() if (f.path, f.number) in alive], file)
+        alive = {r["key"] for r in _results(file) if r["end"] != "noticed"}
+        _judge_all([f for f in all_faults() if f.key in alive], file)
     print_score(file)
 
 
@@ -168,7 +169,7 @@ def _judge_all(faults: Sequence[Fault], file: Path) -> None:
     for n, fault in enumerate(faults):
         began = time.monotonic()
         end, by = judge(fault, covering)
-        known = {"path": fault.path, "number": fault.number, "line": fault.lines[0]}
+        known = {"key": fault.key, "line": fault.lines[0]}
         result = {**known, "what": fault.what, "end": end, "by": by}
         with file.open("a") as out:
             out.write(json.dumps(result) + "\n")
@@ -278,11 +279,16 @@ def _imported_by(files: Sequence[str]) -> list[str]:
 
 
 def _results(file: Path) -> list[dict[str, Any]]:
-    """Return the last result of each fault."""
+    """Return the last result of each fault that there still is."""
     if not file.exists():
         return []
     lines: Iterator[dict[str, Any]] = map(json.loads, file.read_text().splitlines())
-    return list({(r["path"], r["number"]): r for r in lines}.values())
+    last = {r["key"]: r for r in lines}
+    return [
+        {**last[fault.key], "path": fault.path, "line": fault.lines[0]}
+        for fault in all_faults()
+        if fault.key in last
+    ]
 
 
 def print_score(file: Path) -> None:
