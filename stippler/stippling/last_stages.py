@@ -77,8 +77,11 @@ def onto_ink(draft: Draft, watched: bool) -> Iterator[Step]:
 
 def radii(draft: Draft, watched: bool) -> Iterator[Step]:
     """Solve the sizes, so that the ink meets the tone."""
-    n = len(draft.stand)
-    points = np.concatenate((draft.stand, draft.points)) if n else draft.points
+    there, is_long = draft.stand, is_stretched(draft.style)
+    if not is_long:
+        there = np.concatenate((draft.ground.sized_among, there))
+    n = len(there)
+    points = np.concatenate((there, draft.points)) if n else draft.points
     cells = draft.ground.cells(points) if len(points) else None
     raster = draft.raster
     sizes = Sizes(points, raster.darkness, raster.rule, tessellation=cells)
@@ -87,7 +90,7 @@ def radii(draft: Draft, watched: bool) -> Iterator[Step]:
             yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
         for share in sizes.solve():
             yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
-    if is_stretched(draft.style) and len(points) and raster.rule.varies:
+    if is_long and len(points) and raster.rule.varies:
         _for_long_dots(draft, points, sizes)
     draft.radii = sizes.radii[n:]
 
