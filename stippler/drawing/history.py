@@ -21,7 +21,7 @@ BUDGET_BYTES = 256 * 2**20
 _log = logging.getLogger("stippler")
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Step:
     """One line of the history.
 

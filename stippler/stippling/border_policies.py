@@ -122,6 +122,17 @@ class BorderPolicies:
             if i < j and (shared := self.between(seeing[i], seeing[j])) is not None:
                 yield seeing[i], seeing[j], shared
 
+    def seen_from(self, areas: Sequence[int]) -> dict[int, tuple[Shared, ...]]:
+        """Return which areas are seen from some, through which of their borders."""
+        mine = set(areas)
+        around: dict[int, tuple[Shared, ...]] = {}
+        if mine & set(self.seeing):
+            for a, b, shared in self.pairs(self.seeing):
+                if (a in mine) != (b in mine):
+                    other = b if a in mine else a
+                    around[other] = (*around.get(other, ()), shared)
+        return around
+
     def joined(self, areas: Sequence[int]) -> list[tuple[int, ...]]:
         """Return which of some areas are drawn as one, each group where its first area is.
 

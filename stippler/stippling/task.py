@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
+    from stippler.stippling.beyond import Seen
 
 STIPPLE, SETTLE, RELAX = "stipple", "settle", "relax"
 """Make dots; go on with those that a person paints on, none comes, none goes; space them anew."""
@@ -64,6 +65,8 @@ class Task:
         Dots beyond the border, from which new ones keep their distance.
     pieces_mm : tuple of (policy, MultiLineString)
         Pieces of the border that are to dots something else than the style says.
+    seen_mm : tuple of Seen
+        Through which pieces of the border which neighbours' dots are seen.
     """
 
     style: Style
@@ -75,3 +78,4 @@ class Task:
     steps: int | None = None
     neighbours_mm: NDArray[np.float64] | None = None
     pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()
+    seen_mm: tuple[Seen, ...] = ()
