@@ -85,11 +85,11 @@ def relax_drawing(
     yield Work("relax", 0, steps, notes=notes)
     for made in run(task):
         moved = drawing.dots.position_mm.copy()
-        moved[rows] = made.position_mm
+        moved[rows] = made.position_mm[: len(rows)]
         sizes = None
         if made.stage == DONE:
             sizes = drawing.dots.radius_mm.copy()
-            sizes[rows] = made.radius_mm
+            sizes[rows] = made.radius_mm[: len(rows)]
         yield Work(made.stage, made.done, made.total, moved_mm=moved, radius_mm=sizes)
 
 

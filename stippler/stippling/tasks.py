@@ -14,10 +14,11 @@ from stippler.drawing.drawing import Drawing
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.beyond import Seen
+from stippler.stippling.beyond import seen_of
 from stippler.stippling.border_policies import BorderPolicies
 from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
+from stippler.stippling.relax_views import views_of
 from stippler.stippling.shares import number_of_areas, number_of_some
 from stippler.stippling.style_tone import toned_by_area
 from stippler.stippling.task import RELAX, Standing, Task
@@ -32,6 +33,8 @@ def relaxing(
     drawing: Drawing, style: Style, steps: int, areas: Collection[int] | None = None
 ) -> tuple[Task, Rows, tuple[str, ...]]:
     """Return the task of relaxing a drawing's dots, the rows that it moves, and what is left out.
+
+    Dots that areas see through their borders come after those rows in it, and stand still.
 
     Parameters
     ----------
@@ -52,11 +55,31 @@ def relaxing(
     if areas is not None:
         mine &= np.isin(dots.area, list(areas))
     part_of_row, cut, notes = _cut(drawing, partition, mine)
+    moved = [k for k in np.unique(part_of_row[mine]).tolist() if k >= 0]
+    views = list(views_of(drawing, partition, moved, mine))
+    for view in views:  # an area's number stands for all that are seen with it
+        own = np.flatnonzero(mine & np.isin(dots.area, view.areas))
+        mine[own[~shapely.intersects_xy(view.outline, *dots.position_mm[own].T)]] = False
+        part_of_row[own] = view.areas[0]
     rows = np.flatnonzero(mine)
-    some = dots if len(rows) == len(dots) else dots.take(rows)
-    used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
-    standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
-    parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
+    everyone = np.concatenate([rows, *(view.beyond for view in views)])
+    some = dots if len(everyone) == len(dots) == len(rows) else dots.take(everyone)
+    place = np.concatenate([
+        part_of_row[rows], *(np.full(len(view.beyond), view.areas[0]) for view in views),
+    ])  # fmt: skip
+    used, part_of_dot = np.unique(place, return_inverse=True)
+    outlines = {view.areas[0]: view.outline for view in views}
+    parts = tuple(
+        cut[-k] if k < 0 else outlines.get(k) or partition.part_of(k) for k in used.tolist()
+    )
+    fixed = some.fixed
+    if len(everyone) > len(rows):
+        fixed = fixed | (np.arange(len(everyone)) >= len(rows))
+    homes = tuple(
+        (np.flatnonzero(dots.area[rows] == k), partition.part_of(k))
+        for view in views for k in view.areas
+    )  # fmt: skip
+    standing = Standing(some.position_mm, some.radius_mm, fixed, part_of_dot, homes)
     if cut and reference is None and len(rows) < FEW * len(parts):
         style = replace(style, spacing="lloyd")
     return Task(style, reference, RELAX, parts, standing, steps=steps), rows, notes
@@ -174,10 +197,7 @@ def stippling(
     if part.is_empty:
         raise GeometryError("lies under others", f"area {areas[0]}", "give it room of its own")
     dots, around = drawing.dots, policies.seen_from(areas)
-    seen = tuple(
-        Seen(shared.through, shared.walls, partition.part_of(k))
-        for k, border in around.items() for shared in border
-    )  # fmt: skip
+    seen = seen_of(policies, areas)
     if near is None:
         x0, y0, x1, y1 = box_around(part)
         x, y = dots.position_mm.T
