@@ -146,7 +146,7 @@ def places_of(document: Document, rows: Rows, around: Box) -> Iterator[Place]:
         outlines, is_box = _part_of_area(document, int(k), around)
         asked = rows
         if seen := seen_around(document, int(k), around):
-            own = near[np.isin(near_area, [k, *seen.areas])]
+            own = near[np.isin(near_area, [int(k), *seen.areas])]
             outlines, is_box = seen.joined_to(outlines), False
             asked = np.where(document.dots.area[rows] == k, rows, -1)
         if not is_box:
