@@ -187,10 +187,8 @@ def policies_of(document: Document) -> BorderPolicies:
     tables = drawing.areas, drawing.borders, drawing.styles, drawing.patterns
     known = _known.get(document)
     if known is None or known[0] != tables:
-        known = (
-            tuple([dict(table) for table in tables]),
-            BorderPolicies(drawing, document.partition),
-        )
+        made = BorderPolicies(drawing, document.partition)
+        known = tuple([dict(table) for table in tables]), made
         _known[document] = known
     return known[1]
 
