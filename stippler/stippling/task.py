@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
+    from stippler.drawing.line import Line
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
 
@@ -42,6 +43,30 @@ class Standing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class MetLines:
+    """Lines that dots lie on, or line up on, and which dots do so already.
+
+    Attributes
+    ----------
+    lines : tuple of Line
+    ids : tuple of int
+        What the drawing calls them.
+    line_of_dot : (n,) int32
+        Index into `lines`, -1 for a dot on none.
+    along_mm : (n,) float64
+        Arc length there.
+    may_join : (n,) bool
+        Dots that may be drawn onto a line that they adhere to.
+    """
+
+    lines: tuple[Line, ...]
+    ids: tuple[int, ...]
+    line_of_dot: NDArray[np.int32]
+    along_mm: NDArray[np.float64]
+    may_join: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Task:
     """Dots to be made or moved within an area.
 
@@ -62,6 +87,8 @@ class Task:
         How many to take; None is as many as the style says.
     neighbours_mm : (m, 2) float64 or None
         Dots beyond the border, from which new ones keep their distance.
+    lines : MetLines or None
+        What the standing dots line up on while they are moved.
     """
 
     style: Style
@@ -72,3 +99,4 @@ class Task:
     n_done: int = 0
     steps: int | None = None
     neighbours_mm: NDArray[np.float64] | None = None
+    lines: MetLines | None = None
