@@ -19,12 +19,15 @@ Points = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 
+_Found = tuple[Ints, Points, Points, Points]
+
 _HEXAGONAL = 1.0745699318235419  # distance of neighbours, over the root of the area of each
 _AROUND = 12  # dots by which the spacing beside a line is measured
 _SAMPLES = 8  # of the tone, for each dot that a piece has room for
 _LANDS = 0.5  # spacings from a line, at which a dot that is drawn comes onto it
 _DRAWN = 0.5  # of the way to the line, a step
 _IN_CROSSING_MM = 1e-6
+_NEAR_CROSSING = 0.75  # mean distances along the line, at which a dot goes into a crossing
 _MOST_PLACES = 512  # of a piece, where spacing is measured
 
 
@@ -69,6 +72,7 @@ class OnLines:
         self._pieces = Pieces.within(met.lines, parts)
         self.line = met.line_of_dot.astype(np.int64)
         self.along = met.along_mm.astype(np.float64)
+        self._start = np.cumsum(self._pieces.length + 1.0) - self._pieces.length
         self._piece, self._u = self._pieces.find(self.line, self.along)
         self._free = met.may_join & (self.line < 0)
         self.may_cross = self._piece >= 0
@@ -80,7 +84,9 @@ class OnLines:
         n_samples = np.maximum(64, _SAMPLES * np.maximum(self._room, self._n_on()))
         self._measure = Measure(self._pieces, self._at.at, n_samples, tone)
         self._note_crossings()
-        self._n_spread = -1
+        self._n_spread, self._is_even = -1, False
+        self._members: tuple[Ints, Points] = (np.empty(0, np.int64), np.empty((0, 2)))
+        self._close: tuple[Points, Ints] | None = None
 
     @property
     def is_idle(self) -> bool:
@@ -105,11 +111,11 @@ class OnLines:
         self.drawn = np.zeros(len(before), np.bool_)
         if self._has_room():
             self._draw_near(before, chosen)
-        mine = np.flatnonzero(self._piece >= 0)
-        if len(mine):
-            self._spread(mine)
-            chosen[mine] = self._at.at(self.line[mine], self.along[mine])
-        self._sent = mine, chosen[mine]
+        if not self._is_even:
+            self._spread()
+        mine, places = self._members
+        chosen[mine] = places
+        self._sent = self._members
         return chosen
 
     def take_back_refused(self, points: Points) -> None:
@@ -126,7 +132,7 @@ class OnLines:
             setattr(self, name, values)
         free = self._free.copy()
         free[back] = False  # what could not join will not
-        self._free = free
+        self._free, self._is_even = free, False
 
     # --- room -------------------------------------------------------------------------------
 
@@ -160,9 +166,9 @@ class OnLines:
         self._spacing[drawing] = 1.0 / per_mm
         lines = [k for k, draws in enumerate(self._drawing) if draws]
         self._line_of_near = np.array(lines, np.int64)
-        self._near = LineIndex(
-            [self._lines[k] for k in lines], [self._lines[k].reach_mm for k in lines]
-        )
+        self._reach = np.array([self._lines[k].reach_mm for k in lines])
+        self._slack = typical
+        self._near = LineIndex([self._lines[k] for k in lines], (self._reach + typical).tolist())
 
     def _lacks(self) -> Ints:
         """Return how many dots more there is room for on each piece."""
@@ -174,10 +180,9 @@ class OnLines:
     def _draw_near(self, before: Points, chosen: Points) -> None:
         """Draw the nearest free dots to pieces that have room; those close by come onto them."""
         assert self._near is not None
-        rows = np.flatnonzero(self._free & (self._piece < 0))
-        which, along, away, feet = self._near.nearest_feet(before[rows])
-        reach = np.array([line.reach_mm for line in self._near.lines])
-        close = (which >= 0) & (away <= reach[which])
+        rows, found = self._within_reach(before)
+        which, along, away, feet = found or self._near.nearest_feet(before[rows])
+        close = (which >= 0) & (away <= self._reach[which])
         rows, which, along, feet = rows[close], which[close], along[close], feet[close]
         line = self._line_of_near[which]
         piece, u = self._pieces.find(line, along)
@@ -190,10 +195,31 @@ class OnLines:
         chosen[rows[some]] = before[rows[some]] + _DRAWN * (feet[some] - before[rows[some]])
         self.drawn[rows[some]] = True
         lands = some[off[some] <= _LANDS * self._spacing[piece[some]]]
+        if not len(lands):
+            return
+        self._is_even = False
         for name, values in (("line", line), ("along", along), ("_piece", piece), ("_u", u)):
             changed = getattr(self, name).copy()
             changed[rows[lands]] = values[lands]
             setattr(self, name, changed)
+
+    def _within_reach(self, points: Points) -> tuple[Ints, _Found | None]:
+        """Return the free dots that may be within reach; with their lines, if just looked for.
+
+        Until dots have gone half the slack, no other can have come so near.
+        """
+        assert self._near is not None
+        if self._close is not None and np.abs(points - self._close[0]).max() <= 0.5 * self._slack:
+            rows = self._close[1]
+            return rows[self._free[rows] & (self._piece[rows] < 0)], None
+        rows = np.flatnonzero(self._free & (self._piece < 0))
+        found = self._near.nearest_feet(points[rows])
+        which, away = found[0], found[2]
+        lacks = np.bincount(self._pieces.line, self._lacks(), len(self._lines)) > 0
+        near = (which >= 0) & (away <= self._reach[which] + self._slack)
+        near &= lacks[self._line_of_near[which]]
+        self._close = points, rows[near]
+        return rows[near], (which[near], found[1][near], away[near], found[3][near])
 
     # --- crossings --------------------------------------------------------------------------
 
@@ -245,7 +271,9 @@ class OnLines:
                 break
             piece, u = self._cross_piece[k, todo], self._cross_u[k, todo]
             near, off = self._nearest_on(free, piece, u)
-            fits = (near >= 0) & (off <= self._pieces.length[piece] / np.maximum(n[piece], 1))
+            fits = (near >= 0) & (
+                off <= _NEAR_CROSSING * self._pieces.length[piece] / np.maximum(n[piece], 1)
+            )
             todo, near, off = todo[fits], near[fits], off[fits]
             order = np.lexsort((todo, off))
             dots, first = np.unique(near[order], return_index=True)  # one dot, one crossing
@@ -254,10 +282,10 @@ class OnLines:
 
     def _nearest_on(self, dots: Ints, piece: Ints, u: Points) -> tuple[Ints, Points]:
         """Return for places on pieces the nearest of some dots there, or -1, and how far it is."""
-        order = dots[np.lexsort((self._u[dots], self._piece[dots]))]
-        start = np.cumsum(self._pieces.length + 1.0) - self._pieces.length
-        keys = start[self._piece[order]] + self._u[order]
-        k = np.searchsorted(keys, start[piece] + u)
+        keys = self._start[self._piece[dots]] + self._u[dots]
+        by_place = np.argsort(keys, kind="stable")
+        order, keys = dots[by_place], keys[by_place]
+        k = np.searchsorted(keys, self._start[piece] + u)
         best, least = np.full(len(u), -1, np.int64), np.full(len(u), np.inf)
         for row in (k - 1, k):
             ok = (row >= 0) & (row < len(order))
@@ -269,18 +297,21 @@ class OnLines:
 
     # --- spreading --------------------------------------------------------------------------
 
-    def _spread(self, mine: Ints) -> None:
+    def _spread(self) -> None:
         """Spread the dots on all pieces evenly, in one dimension."""
+        mine = np.flatnonzero(self._piece >= 0)
+        mine = mine[np.argsort(self._start[self._piece[mine]] + self._u[mine], kind="stable")]
         if len(self._pinned) and len(mine) != self._n_spread:
             if self._n_spread >= 0 or not self._keep_pins(mine):
                 self._pinned = np.full(len(self._pinned), -1, np.int64)
                 self._move_evenly(mine)  # so that as many as fit lie between crossings
             self._pin(mine)
-        self._n_spread = len(mine)
+        self._n_spread, self._is_even = len(mine), True
         self._move_evenly(mine)
         along = self.along.copy()
         along[mine] = self._pieces.along(self._piece[mine], self._u[mine])
         self.along = along
+        self._members = mine, self._at.at(self.line[mine], along[mine])
 
     def _move_evenly(self, mine: Ints) -> None:
         """Move dots along pieces, to lie evenly between those in crossings."""
