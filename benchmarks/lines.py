@@ -85,7 +85,7 @@ def _lines(repeats: int) -> list[Figure]:
 
 
 def _on_lines(lines: list[Line], dots: NDArray[np.float64]) -> list[Figure]:
-    """Measure what lines add to steps of relaxation, while dots join them and once they are full."""
+    """Measure what lines add to steps of relaxation, while dots join them and once full."""
     met = [replace(line, meeting=ADHERE, reach_mm=1.0) for line in lines]
     n = len(dots)
     everyone = MetLines(tuple(met), tuple(range(len(met))), np.full(n, -1, np.int32), np.zeros(n),

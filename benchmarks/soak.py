@@ -346,12 +346,20 @@ class Soak:
         if self.app.session.document is not None:
             self.n_steps += len(self.app.session.document.history.steps)
         self.app.session.new(Page(100.0, 70.0))
+        glfw.set_window_size(self.app.window._handle, *_SIZE)  # its pixels are memory here, too
         self._wait()
+        self._show()
         gc.collect()
         self.memory_mb.append(_memory_mb())
 
     def _wait(self) -> None:
         while self.app.session.busy:
+            self.app.step(0.02)
+
+    def _show(self) -> None:
+        """Draw what there is: until then the page and its tools are those of the drawing before."""
+        self.app.step(0.0)
+        while not self.app.editor.idle:
             self.app.step(0.02)
 
     def close(self) -> None:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-    from shapely.geometry import MultiPolygon, Polygon
+    from shapely.geometry import MultiLineString, MultiPolygon, Polygon
 
     from stippler.drawing.line import Line
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
+    from stippler.stippling.beyond import Seen
 
 STIPPLE, SETTLE, RELAX = "stipple", "settle", "relax"
 """Make dots; go on with those that a person paints on, none comes, none goes; space them anew."""
@@ -87,6 +88,10 @@ class Task:
         How many to take; None is as many as the style says.
     neighbours_mm : (m, 2) float64 or None
         Dots beyond the border, from which new ones keep their distance.
+    pieces_mm : tuple of (policy, MultiLineString)
+        Pieces of the border that are to dots something else than the style says.
+    seen_mm : tuple of Seen
+        Through which pieces of the border which neighbours' dots are seen.
     lines : MetLines or None
         What the standing dots line up on while they are moved.
     """
@@ -99,4 +104,6 @@ class Task:
     n_done: int = 0
     steps: int | None = None
     neighbours_mm: NDArray[np.float64] | None = None
+    pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()
+    seen_mm: tuple[Seen, ...] = ()
     lines: MetLines | None = None
