@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.area import PAGE_AREA
-from stippler.drawing.one_step import as_one_step
 from stippler.editor import processing
 from stippler.editor.activity import (
     Filling,
