@@ -1,4 +1,4 @@
-"""Drawings saved by 0.2 whose areas covered the page lacked its own area, and were refused."""
+"""Drawings saved once whose areas covered the page lacked its own area, and were refused."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from stippler.opening import open_file
 
 
 def saved_as_then(path, outlines):
-    """Write a file as 0.2 did: with areas, and without the page's."""
+    """Write a file as it was done then: with areas, and without the page's."""
     drawing = Drawing.blank(Page(40.0, 30.0))
     drawing.dots = Dots.round(np.array([[0.0, 0.0], [10.0, 10.0], [30.0, 10.0]]), 0.2)
     drawing.dots.area[:] = 0, 1, len(outlines)  # the first lies on the very rim

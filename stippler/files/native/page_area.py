@@ -15,7 +15,7 @@ from stippler.drawing.planar.slivers import LEAST_WIDTH_MM
 def with_page_area(areas: Mapping[int, Area], page: Page) -> dict[int, Area]:
     """Return areas with the page's own among them: it owns what no other does.
 
-    Files of 0.2 lack it where areas covered the whole page. As in drawings of today, it then has
+    Earlier files lack it where areas covered the whole page. As in drawings of today, it then has
     the style of the lowest of them.
     """
     if PAGE_AREA in areas or not areas:
