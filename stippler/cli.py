@@ -219,9 +219,12 @@ def scale(
 ) -> None:
     """Scale a drawing to another size or number of dots, keeping its tone."""
     from stippler.api import open as open_drawing
-    from stippler.stippling.scale import Scaling, scaled_drawing
+    from stippler.stippling.scale import Scaling, patterns_aside, scaled_drawing
 
-    drawing = scaled_drawing(open_drawing(file), Scaling(by / 100.0, dots, least_radius, seed))
+    before = open_drawing(file)
+    for note in patterns_aside(before):
+        _note(file, note)
+    drawing = scaled_drawing(before, Scaling(by / 100.0, dots, least_radius, seed))
     drawing.inputs = (file,)
     drawing.save(output)
     stops.written = True

@@ -21,7 +21,7 @@ _STAGE = "scale"
 
 def scale(session: Session, percent: float, n_dots: int | None, least_radius_mm: float) -> bool:
     """Begin to scale the drawing; return whether it began. What cannot be done is said."""
-    from stippler.stippling.scale import Scaling, scaled_drawing
+    from stippler.stippling.scale import Scaling, patterns_aside, scaled_drawing
 
     document = session.document
     if document is None or not session.paintable or document.in_stroke:
@@ -34,6 +34,8 @@ def scale(session: Session, percent: float, n_dots: int | None, least_radius_mm:
         return False
     session.supersede()
     frozen = document.drawing.snapshot()
+    for note in patterns_aside(frozen):
+        session.messages.say(note, WARNING)
 
     def run() -> Iterator[Work]:
         from stippler.drawing.document import Document

@@ -19,6 +19,7 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from stippler.drawing.style import AUTOMATIC, BLEED, THROUGH, WALL
 from stippler.kernels.tone.edge_ink import even_rim
 from stippler.stippling.border_policies import (
+    ON_LINE_MM,
     Pieces,
     edges_in,
     merged,
@@ -55,12 +56,15 @@ class Borders:
         The sides of the page that some of them lie on, where the picture is mirrored.
     open : tuple of LineString, mm
         Those of them beyond which the picture goes on as it is.
+    cut : tuple of LineString, mm
+        Lines at which dots are cut off, and none is drawn back to unless one is missing.
     """
 
     outline: Outline
     bleeding: tuple[LineString, ...] = ()
     sides: tuple[Side, ...] = ()
     open: tuple[LineString, ...] = ()
+    cut: tuple[LineString, ...] = ()
 
     @classmethod
     def of(
@@ -131,7 +135,7 @@ class Borders:
         inside = shapely.intersects_xy(self.outline, position_mm[:, 0], position_mm[:, 1])
         kept, beyond = np.flatnonzero(inside), np.flatnonzero(~inside)
         at = np.array(position_mm, np.float64)
-        line = shapely.multilinestrings(self.bleeding)
+        line = shapely.multilinestrings([*self.bleeding, *self.cut])
         if n_wanted is not None and len(kept) > n_wanted:
             inwards = shapely.distance(line, shapely.points(at[kept]))
             return np.sort(kept[np.argsort(inwards, kind="stable")[len(kept) - n_wanted :]]), at
@@ -139,6 +143,7 @@ class Borders:
             way = shapely.shortest_line(line, shapely.points(at[beyond]))
             foot = shapely.get_coordinates(way)[::2]
             depth = shapely.length(way) / radius_mm[beyond]
+            depth[self._at_cut(foot)] += DotRule.BLEED_REACH
             rank = np.argsort(depth, kind="stable")
             n = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH))
             if n_wanted is not None:
@@ -150,6 +155,13 @@ class Borders:
             )
             kept = np.sort(np.concatenate([kept, beyond[back]]))
         return kept, at
+
+    def _at_cut(self, foot: Floats) -> NDArray[np.bool_]:
+        """Tell which places on the lines are on those that dots are cut off at."""
+        if not self.cut:
+            return np.zeros(len(foot), np.bool_)
+        lines = shapely.multilinestrings(self.cut)
+        return np.asarray(shapely.dwithin(shapely.points(foot), lines, ON_LINE_MM))
 
     def near(self, position_mm: Floats, reach_mm: float) -> NDArray[np.bool_]:
         """Tell which dots lie so near a line that bleeds."""

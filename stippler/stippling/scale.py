@@ -108,7 +108,7 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     from stippler.drawing.area_edits import with_policies_of
     from stippler.drawing.drawing import Page
     from stippler.drawing.partition import Partition
-    from stippler.stippling.part_of_area import parts_met
+    from stippler.stippling.part_of_area import met_and_missed
 
     f, original = scaling.factor, drawing
     reference = drawing.reference
@@ -135,13 +135,27 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
         toned = frozenset(k for k in drawing.areas if drawing.style_of(k).sizes == "tone")
     partition = Partition(drawing.outlines())
     owned = {k: partition.part_of(k) for k in drawing.areas}
-    parts = owned | parts_met(drawing, owned)[0]
+    parts = owned | met_and_missed(drawing, owned)[0]
     dots = scaled_dots(before, parts, scaling, toned)
     drawing = replace(drawing, dots=dots, reference=reference)
     for area in sorted(toned):
         if np.count_nonzero(before.area == area) != np.count_nonzero(dots.area == area):
             _solve(drawing, area, parts[area], scaling.least_radius_mm)
     return drawing
+
+
+def patterns_aside(drawing: Drawing) -> tuple[str, ...]:
+    """Return what there is to say of areas that are scaled as if they had no pattern."""
+    from stippler.drawing.partition import Partition
+    from stippler.stippling.part_of_area import met_and_missed, pattern_of
+
+    partition = Partition(drawing.outlines())
+    laid = [k for k in drawing.areas if pattern_of(drawing, k) is not None]
+    _, missed = met_and_missed(drawing, {k: partition.part_of(k) for k in laid})
+    return tuple(
+        f"area {drawing.areas[k].name!r} is scaled as if it had no pattern: {error}"
+        for k, error in missed.items()
+    )
 
 
 def _solve(drawing: Drawing, area: int, part: Polygon | MultiPolygon, least_mm: float) -> None:
