@@ -346,6 +346,7 @@ class Soak:
         if self.app.session.document is not None:
             self.n_steps += len(self.app.session.document.history.steps)
         self.app.session.new(Page(100.0, 70.0))
+        glfw.set_window_size(self.app.window._handle, *_SIZE)  # its pixels are memory here, too
         self._wait()
         self._show()
         gc.collect()

@@ -21,7 +21,7 @@ BUDGET_BYTES = 256 * 2**20
 _log = logging.getLogger("stippler")
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Step:
     """One line of the history.
 
@@ -215,7 +215,8 @@ class History:
         if self.n_bytes <= self._budget:
             return
         now = self.n_done - 0.5
-        for i in sorted(range(len(self.steps)), key=lambda i: abs(i - now), reverse=True):
+        far_first = sorted(range(len(self.steps)), key=lambda i: abs(i - now), reverse=True)
+        for i in far_first:  # pragma: no branch: the last ones are near, and end it
             step = self.steps[i]
             if self.n_bytes <= self._budget or not self._can_spill or abs(i - now) < 1.0:
                 return

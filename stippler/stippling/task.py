@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiLineString, MultiPolygon, Polygon
 
+    from stippler.drawing.line import Line
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
     from stippler.stippling.beyond import Seen
@@ -43,6 +44,30 @@ class Standing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class MetLines:
+    """Lines that dots lie on, or line up on, and which dots do so already.
+
+    Attributes
+    ----------
+    lines : tuple of Line
+    ids : tuple of int
+        What the drawing calls them.
+    line_of_dot : (n,) int32
+        Index into `lines`, -1 for a dot on none.
+    along_mm : (n,) float64
+        Arc length there.
+    may_join : (n,) bool
+        Dots that may be drawn onto a line that they adhere to.
+    """
+
+    lines: tuple[Line, ...]
+    ids: tuple[int, ...]
+    line_of_dot: NDArray[np.int32]
+    along_mm: NDArray[np.float64]
+    may_join: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Task:
     """Dots to be made or moved within an area.
 
@@ -67,6 +92,8 @@ class Task:
         Pieces of the border that are to dots something else than the style says.
     seen_mm : tuple of Seen
         Through which pieces of the border which neighbours' dots are seen.
+    lines : MetLines or None
+        What the standing dots line up on while they are moved.
     """
 
     style: Style
@@ -79,3 +106,4 @@ class Task:
     neighbours_mm: NDArray[np.float64] | None = None
     pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()
     seen_mm: tuple[Seen, ...] = ()
+    lines: MetLines | None = None

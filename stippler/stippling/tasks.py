@@ -10,7 +10,9 @@ import shapely
 from numpy.typing import NDArray
 
 from stippler.drawing.area import PAGE_AREA
+from stippler.drawing.dots import FREE, ON_CURVE, Dots
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.line import ADHERE, Line
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
@@ -20,7 +22,7 @@ from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
 from stippler.stippling.shares import number_of_areas, number_of_some
 from stippler.stippling.style_tone import toned_by_area
-from stippler.stippling.task import RELAX, Standing, Task
+from stippler.stippling.task import RELAX, MetLines, Standing, Task
 
 _LEAST_MARGIN_MM, _MARGIN = 1.0, 0.05  # around an area, of its side: there its neighbours lie
 _WHOLE = 1e-9  # of the page
@@ -55,11 +57,36 @@ def relaxing(
     rows = np.flatnonzero(mine)
     some = dots if len(rows) == len(dots) else dots.take(rows)
     used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
-    standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
+    lines = lines_met(drawing, some)
+    fixed = some.fixed if lines is None else (some.constraint != FREE) & (lines.line_of_dot < 0)
+    standing = Standing(some.position_mm, some.radius_mm, fixed, part_of_dot)
     parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
     if cut and reference is None and len(rows) < FEW * len(parts):
         style = replace(style, spacing="lloyd")
-    return Task(style, reference, RELAX, parts, standing, steps=steps), rows, notes
+    task = Task(style, reference, RELAX, parts, standing, steps=steps, lines=lines)
+    return task, rows, notes
+
+
+def lines_met(drawing: Drawing, dots: Dots) -> MetLines | None:
+    """Return the lines that some of a drawing's dots lie on or may line up on; None without any.
+
+    Dots of locked areas stay where they are.
+    """
+    if not drawing.lines:
+        return None
+    lines = {k: line for k, line in drawing.lines.items() if isinstance(line, Line)}
+    locked = [k for k, area in drawing.areas.items() if area.locked]
+    moves = ~np.isin(dots.area, locked)
+    on = moves & (dots.constraint == ON_CURVE) & np.isin(dots.curve, list(lines))
+    draws = any(line.meeting == ADHERE and not line.hidden for line in lines.values())
+    if not (on.any() or draws):
+        return None
+    ids = tuple(sorted(lines))
+    which = np.searchsorted(ids, dots.curve)
+    return MetLines(
+        tuple(lines[k] for k in ids), ids, np.where(on, which, -1).astype(np.int32),
+        dots.parameter.copy(), moves & (dots.constraint == FREE),
+    )  # fmt: skip
 
 
 def _cut(

@@ -56,7 +56,7 @@ class Shell:
     """What a pickle may hold: something to be done when it is read."""
 
     def __reduce__(self):
-        return print, ("a pickle was read",)
+        return len, ("a pickle was read",)
 
 
 def written(path, members):
