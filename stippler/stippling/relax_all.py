@@ -19,6 +19,7 @@ from scipy.spatial import KDTree
 from stippler.drawing.reference import Reference
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
+from stippler.stippling.ground import brought_into
 from stippler.stippling.on_lines import OnLines
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
@@ -35,6 +36,7 @@ _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solv
 _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
 _WHOLE = 1e-6  # of the page
+_INSET_MM = 1e-6  # how far within the border a dot lies that was brought back
 _FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 _BY_CELLS = ("lloyd", "even")  # methods whose steps others may redirect
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
@@ -116,9 +118,20 @@ class StandingDraft:
         density = None if sheet is None else sheet.density_at
         return with_long_waves_gone(self.points, self.parts, of_dot, still, density)
 
+    def come_home(self) -> Floats:
+        """Return where the dots are, those that have left their own areas brought back."""
+        homes = self.standing.homes
+        points = self.points.copy() if homes else self.points
+        for rows, home in homes:
+            at = points[rows]
+            out = np.flatnonzero(~shapely.intersects_xy(home, at[:, 0], at[:, 1]))
+            if len(out):
+                points[rows[out]] = brought_into(home, at[out], _INSET_MM)
+        return points
+
     def progress(self, step: Step, watched: bool) -> Progress:
         """Return a snapshot after a step."""
-        points = _frozen(self.points) if watched else np.empty((0, 2))
+        points = _frozen(self.come_home()) if watched else np.empty((0, 2))
         sizes = self.radius_mm if watched else np.empty(0, np.float32)
         line, along = self._lines_of_dots() if watched else (None, None)
         return Progress(step.stage, step.done, step.total, points, _frozen(sizes),
@@ -126,7 +139,7 @@ class StandingDraft:
 
     def finished(self) -> Progress:
         """Return the last snapshot."""
-        points, sizes = _frozen(self.points), _frozen(self.radius_mm)
+        points, sizes = _frozen(self.come_home()), _frozen(self.radius_mm)
         line, along = self._lines_of_dots()
         return Progress(DONE, 1, 1, points, sizes, line_of_dot=line, along_mm=along)
 
@@ -150,6 +163,7 @@ def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
 
 def size_again(draft: StandingDraft, watched: bool) -> Iterator[Step]:
     """Solve sizes for the places where the dots are now; those a person has set stay."""
+    draft.points = draft.come_home()
     if draft.sheet is not None:
         solved = draft.sheet.solved_at(draft.points)
         draft.radius_mm = draft.radius_mm if solved is None else solved
