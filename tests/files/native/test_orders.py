@@ -141,12 +141,3 @@ def test_structure_that_is_no_document_is_refused(data):
     members = members_of(document().drawing)
     with pytest.raises(DrawingFileError, match="holds no drawing"):
         drawing_of({**members, "document.json": data}, picture_of_bytes, "here")
-
-
-def test_a_document_without_the_pages_own_area_is_refused():
-    drawing = Drawing.blank(Page(40.0, 30.0))  # without dots, which would be missed first
-    members = members_of(drawing)
-    text = members["document.json"].replace(b'"area":{"0":', b'"area":{"1":')
-    assert text != members["document.json"]
-    with pytest.raises(DrawingFileError, match="own area is missing"):
-        drawing_of({**members, "document.json": text}, picture_of_bytes, "here")
