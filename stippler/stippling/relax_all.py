@@ -170,6 +170,18 @@ def size_again(draft: StandingDraft, watched: bool) -> Iterator[Step]:
     yield from ()
 
 
+def sizes_over_solved(task: Task) -> NDArray[np.float64]:
+    """Return how much larger standing dots are than their tone asks for, (n,).
+
+    1 for those whose sizes were solved; others were set by a person.
+    """
+    draft, reference = StandingDraft.of(task), task.reference
+    assert reference is not None, "without one there is no tone to compare with"
+    sheet = _Sheet(draft, reference)
+    share = draft.radius_mm / np.maximum(sheet.solved_mm, 1e-9)
+    return np.where(sheet.is_solved, 1.0, share)
+
+
 def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     style, reference, standing = draft.task.style, draft.task.reference, draft.standing
     field = None
@@ -284,7 +296,7 @@ class _Sheet:
         sizes = radius_mm.astype(np.float64)
         self.rule = DotRule(float(sizes.min()) / pixel, float(sizes.max()) / pixel)
         self.is_solved = np.zeros(len(sizes), np.bool_)
-        solved = self._solved(position_mm)
+        self.solved_mm = solved = self._solved(position_mm)
         self.is_solved = np.abs(sizes - solved) < _SOLVED * solved
         levels, typical = self._size_by_darkness(position_mm, sizes)
         per_dot = np.pi * typical**2
