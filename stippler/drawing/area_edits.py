@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,12 +13,17 @@ from stippler.drawing import records
 from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.one_step import as_one_step
 from stippler.drawing.partition import Outline
 from stippler.drawing.planar.edits import Outcome, touched
+from stippler.drawing.planar.path import Path
 from stippler.drawing.planar.planar_map import Arc, PlanarMap
+from stippler.drawing.planar.policies import inherited
 from stippler.drawing.planar.slivers import LEAST_WIDTH_MM
 from stippler.drawing.planar.swept import dots_in_strip
 from stippler.errors import GeometryError
+
+Whole = TypeVar("Whole", bound=Drawing)
 
 _COLOURS = (
     "#c65d57", "#5d86c6", "#6aa86a", "#c9a24b", "#8d6bb3", "#4fa3a0", "#b3708f", "#7d8a4f",
@@ -47,6 +53,26 @@ def _with_outlines(made: PlanarMap, drawing: Drawing, next_area: int) -> PlanarM
             ready = PlanarMap(made.arcs, made.next_arc, k)
             made = add(ready, paths_of(outline), rule=EVEN_ODD).map
     return PlanarMap(made.arcs, made.next_arc, next_area)
+
+
+def with_policies_of(before: Drawing, after: Whole, factor: float) -> Whole:
+    """Return a drawing that was scaled, with borders that are to dots what they were.
+
+    As it is where no piece of a border has a policy of its own: then its borders can wait.
+    """
+    spoken = [
+        replace(arc, path=Path(np.rint(arc.path.vertices * factor).astype(np.int64)))
+        for arc in before.borders.values()
+        if isinstance(arc, Arc) and arc.policies
+    ]
+    if not spoken:
+        return after
+    made = map_of(after)
+    borders: dict[int, records.Record] = dict(
+        zip(made.arcs, inherited(spoken, list(made.arcs.values())), strict=True)
+    )
+    areas = {k: replace(a, outline_mm=made.outline(k)) for k, a in after.areas.items()}
+    return replace(after, borders=borders, areas=areas)
 
 
 def edit_areas(
@@ -82,15 +108,13 @@ def edit_areas(
     before = current_map(document)
     outcome = edit(before)
     refuse_locked(document.drawing, before, outcome.map)
-    document.begin(label)
-    try:
+
+    def act(document: Document) -> None:
         _take(document, before, outcome, style, names or {})
         if also is not None:
             also(outcome)
-    except BaseException:
-        document.cancel()
-        raise
-    document.commit()
+
+    as_one_step(document, label, act)
     _last[document] = outcome.map
     return outcome
 

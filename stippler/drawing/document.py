@@ -20,7 +20,7 @@ from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE
 from stippler.drawing.partition import NOWHERE, Partition
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.reference import Reference
-from stippler.drawing.run import Run
+from stippler.drawing.run import Holding, Limits, Run
 from stippler.drawing.store import DotStore, Rows, union
 from stippler.drawing.style import Style
 
@@ -60,6 +60,7 @@ class Document:
         self._replayed_step: Step | None = None
         self._locked: NDArray[np.int32] | None = None  # areas
         self._areas_at = 0  # when they last changed
+        self._line_at: dict[int, int] = {}  # the same of each line
         self._note_locks()
         drawing.dots = self._store.dots
         self._find_by_place()
@@ -295,16 +296,16 @@ class Document:
         self._tell(Entry(OPENED, Edit(label)))
         return dots
 
-    def merge(self, position_mm: NDArray[np.float64]) -> int:
-        """Move the dots of the run to a result's positions; return how many moved.
+    def merge(self, position_mm: NDArray[np.float64], holding: Holding | None = None) -> int:
+        """Move the dots of the run to a result's positions; return how many free ones moved.
 
-        Dots that are gone, held, or changed by a person since the run began stay as they are.
+        Dots that are gone, fixed, or changed by a person since the run began stay as they are.
         """
-        if self._run is None:
+        if (run := self._run) is None:
             return 0
-        if self._areas_at > self._run.base:
-            position_mm = self._run.kept_in_areas(self._store, self.partition, position_mm)
-        n, furthest_mm = self._run.move(self._store, position_mm, self._locked)
+        lines = [k for k, at in self._line_at.items() if at > run.base]
+        limits = Limits(self.partition, self._areas_at > run.base, lines, self._locked)
+        n, furthest_mm = run.merge(self._store, position_mm, limits, holding)
         self._index.drift(furthest_mm)
         self.changes.note_places()
         return n
@@ -472,6 +473,8 @@ class Document:
             self._partition = None
             self._areas_at = self.changes.now
             self._note_locks()
+        elif kind == records.LINE:
+            self._line_at[i] = self.changes.now
         elif kind == records.PAGE:
             self._find_by_place()
 

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
+from stippler.drawing.one_step import as_one_step
 from stippler.editor.messages import WARNING, Messages
 
 if TYPE_CHECKING:
@@ -241,7 +242,7 @@ class Relaxing(Job):
             desk.messages.say("; ".join(work.notes), WARNING)
         if desk.document is not None:
             if work.moved_mm is not None:
-                desk.document.merge(work.moved_mm)
+                desk.document.merge(work.moved_mm, work.held)
             if work.radius_mm is not None:
                 desk.document.merge_radii(work.radius_mm)
         return self
@@ -266,10 +267,8 @@ class Filling(Job):
         if document is not None and work.points_mm is not None:
             from stippler.drawing.dots import Dots
 
-            document.begin("Fill")
-            n_before = len(document.dots)
-            document.insert(Dots.round(work.points_mm, self.radius_mm))
-            document.commit()
+            dots, n_before = Dots.round(work.points_mm, self.radius_mm), len(document.dots)
+            as_one_step(document, "Fill", lambda document: document.insert(dots))
             desk.messages.say(f"{len(document.dots) - n_before:,} dots added")
         return self
 

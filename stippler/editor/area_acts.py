@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from stippler.drawing import records
 from stippler.drawing.area import PAGE_AREA, Area
+from stippler.drawing.one_step import as_one_step
 from stippler.editor.area_choice import AreaChoice
 from stippler.editor.area_jobs import AreaJobs
 from stippler.editor.messages import INFO, WARNING
@@ -376,12 +377,14 @@ class AreaActs:
         document = self.document
         if document is None:
             return
-        areas = document.drawing.areas
-        document.begin(label)
-        for k, values in fields.items():
-            if k in areas:
-                document.set(records.AREA, k, replace(areas[k], **values))
-        document.commit()
+
+        def act(document: Document) -> None:
+            areas = document.drawing.areas
+            for k, values in fields.items():
+                if k in areas:
+                    document.set(records.AREA, k, replace(areas[k], **values))
+
+        as_one_step(document, label, act)
 
     # --- inside -------------------------------------------------------------------------------
 

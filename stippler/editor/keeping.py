@@ -70,7 +70,7 @@ class Keeping:
                 f"{path.name} is open in another window; what is saved last replaces the other",
                 WARNING,
             )
-        document.follow(self._take)
+        document.follow(lambda entry: self._take(document, entry))
         self._begin()
 
     def saved(self, path: Path) -> None:
@@ -93,9 +93,12 @@ class Keeping:
         if keeper.problem is not None and self._failed_s is None:
             self._failed_s = now
             self._messages.say(str(keeper.problem), ERROR, keeper.problem)
+        elif self._failed_s is not None and keeper.is_on_disk:
+            self._failed_s = None
+            self._messages.say("edits are kept for recovery again", INFO)
         elif self._failed_s is not None and now - self._failed_s >= RETRY_S:
+            self._failed_s = now
             self._begin()
-            self._failed_s = None if self._keeper_is_fine() else now
 
     def close(self) -> None:
         """Forget what was kept: the drawing is closed, or saved, as a person wished."""
@@ -103,12 +106,6 @@ class Keeping:
             self._keeper.forget()
         self._document = self._keeper = self._log = self._lost = None
         self._failed_s = None
-
-    def _keeper_is_fine(self) -> bool:
-        fine = self._keeper is not None and self._keeper.problem is None
-        if fine:
-            self._messages.say("edits are kept for recovery again", INFO)
-        return fine
 
     def _begin(self) -> None:
         """Keep the drawing as it is now."""
@@ -123,6 +120,6 @@ class Keeping:
         self._keeper.begin(lambda: members_of(start), self._name, self._path, PROGRAM)
         self._log = EditLog(self._keeper.append, self._document)
 
-    def _take(self, entry: Entry) -> None:
-        if self._log is not None:
+    def _take(self, document: Document, entry: Entry) -> None:
+        if self._log is not None and document is self._document:  # not one that was open before
             self._log.take(entry)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from stippler.brushes.presets import presets_path
 from stippler.camera import Point
+from stippler.drawing.one_step import as_one_step
 from stippler.editor.events import LEFT, NO_MODS, Event, KeyDown, Pressed
 from stippler.editor.messages import ERROR, WARNING
 from stippler.editor.selection_memory import SelectionMemory
@@ -210,14 +211,11 @@ class Painting:
         if document is None or not self._session.paintable or self.is_busy:
             return
         self._memory.note(document)
-        document.begin(label)
         try:
-            act(document)
+            as_one_step(document, label, act)
         except Exception as error:  # noqa: BLE001 - taken back; the editor lives on
-            document.cancel()
             self._report(error)
             return
-        document.commit()
         self._memory.keep(document)
 
     # --- the history ------------------------------------------------------------------------

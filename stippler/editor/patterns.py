@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stippler.drawing.one_step import as_one_step
 from stippler.editor.messages import INFO, WARNING
 from stippler.editor.painting import Painting
 from stippler.editor.session import Session
@@ -240,9 +241,11 @@ class Patterns:
 def _give_style(document: Document, made: Iterable[int], like: Area) -> None:
     """Give new areas a style of their own, as another area's is."""
     own = document.drawing.styles[like.style]
-    document.begin("Style of the area between")
-    for k in made:
-        area = document.drawing.areas[k]
-        i = document.add("style", replace(own, name=f"{area.name} {k}"))
-        document.set("area", k, replace(area, name=f"between {like.name}", style=i))
-    document.commit()
+
+    def act(document: Document) -> None:
+        for k in made:
+            area = document.drawing.areas[k]
+            i = document.add("style", replace(own, name=f"{area.name} {k}"))
+            document.set("area", k, replace(area, name=f"between {like.name}", style=i))
+
+    as_one_step(document, "Style of the area between", act)

@@ -11,6 +11,7 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from stippler.drawing import records
+from stippler.drawing.one_step import as_one_step
 from stippler.editor.activity import Processing
 from stippler.editor.messages import WARNING
 from stippler.errors import StipplerError
@@ -37,10 +38,12 @@ def process(session: Session, areas: Sequence[int]) -> bool:
 
     session.supersede()
     try:
-        tasks = tasks_of(document, chosen)
+        tasks, left_out = tasks_of(document, chosen)
     except StipplerError as error:
         session.messages.say(str(error), WARNING)
         return False
+    for note in left_out:
+        session.messages.say(note, WARNING)
     styles = [document.drawing.style_of(area) for area in chosen]
     if text := processing_warning(document.drawing, styles):
         session.messages.say(text, WARNING)
@@ -61,11 +64,13 @@ def start_all(session: Session) -> bool:
     if document is None:
         return False
     drawing, reference = document.drawing, document.drawing.reference
-    document.begin("Style")
-    document.set(records.STYLE, drawing.areas[0].style, session.style)
-    if reference is not None:
-        document.set(records.REFERENCE, 0, reference.adjusted(session.adjustment))
-    document.commit()
+
+    def take_values(document: Document) -> None:
+        document.set(records.STYLE, drawing.areas[0].style, session.style)
+        if reference is not None:
+            document.set(records.REFERENCE, 0, reference.adjusted(session.adjustment))
+
+    as_one_step(document, "Style", take_values)
     return process(session, sorted(drawing.areas))
 
 
@@ -101,9 +106,9 @@ def resize(session: Session, areas: Collection[int], percent: float) -> bool:
         return False
     dots = document.dots
     rows = np.flatnonzero(np.isin(dots.area, chosen) & ~dots.fixed)
-    document.begin("Resize areas")
-    document.change("radius_mm", rows, dots.radius_mm[rows] * np.float32(percent / 100.0))
-    return not document.commit().is_empty
+    sizes = dots.radius_mm[rows] * np.float32(percent / 100.0)
+    edit = as_one_step(document, "Resize areas", lambda d: d.change("radius_mm", rows, sizes))
+    return not edit.is_empty
 
 
 def clear(session: Session, areas: Collection[int]) -> bool:
@@ -116,9 +121,7 @@ def clear(session: Session, areas: Collection[int]) -> bool:
         return False
     dots = document.dots
     rows = np.flatnonzero(np.isin(dots.area, chosen) & ~dots.fixed)
-    document.begin("Clear areas")
-    document.remove(rows)
-    return not document.commit().is_empty
+    return not as_one_step(document, "Clear areas", lambda d: d.remove(rows)).is_empty
 
 
 def _ready(session: Session) -> Document | None:

@@ -1,4 +1,4 @@
-"""Areas whose dots run off their border: laid out on a wider ground, and trimmed to their own."""
+"""Areas whose dots run off their border or see others: laid out on a wider ground, and trimmed."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.partition import Outline
-from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
+from stippler.kernels.halftone.scan_order import outside_polygon
+from stippler.stippling.beyond import NOTHING, Beyond
 from stippler.stippling.borders import Borders, along_line
-from stippler.stippling.ground import AreaGround, Floats, Ground
+from stippler.stippling.ground import AreaGround, Floats, Ground, without_dots_at
+from stippler.stippling.halftone_area import edges_of
 from stippler.stippling.page_raster import (
     BLEED_SPACINGS,
     FEWEST_WITH_BLEED,
@@ -20,38 +20,52 @@ from stippler.stippling.page_raster import (
     PageRaster,
 )
 from stippler.stippling.radii import solve_radii
+from stippler.stippling.task import STIPPLE, Task
 from stippler.stippling.tone import DotRule, rule_for
 
 _BAND, _CELLS = 3.0, 6.0  # mean spacings; dots beside the line, and those that bound their cells
 
 
-def area_ground(
-    reference: Reference, style: Style, outline_mm: Outline, *, bleeds: bool = True
-) -> AreaGround:
-    """Return what an area's dots are laid out on; wider than itself where its border bleeds.
+def area_ground(task: Task) -> AreaGround:
+    """Return what an area's dots are laid out on.
 
-    Few dots, and those of narrow areas, lie within it from the start, as on a page.
+    It is wider than the area where its border bleeds, or is seen through. Few dots, and those of
+    narrow areas, do without a bleed, as on a page.
     """
-    own = AreaGround(reference, style, outline_mm)
+    reference, outline_mm = task.reference, task.parts_mm[0]
+    assert reference is not None, "only relaxation does without a reference"
+    own = AreaGround(reference, task.style, outline_mm)
     style = own.style
-    if not (bleeds and style.weighted and style.is_relaxed and style.sizes == "tone"):
+    may_see = style.weighted and style.is_relaxed and style.sizes == "tone"
+    if not may_see or task.kind != STIPPLE:
         return own
     size_mm = (reference.width_mm, reference.height_mm)
-    borders = Borders.of(outline_mm, style.border, size_mm)
-    if not borders.bleeding:
+    borders = Borders.of(outline_mm, style.border, size_mm, task.pieces_mm)
+    if not (borders.bleeding or task.seen_mm):
         return own
-    raster = own.raster
-    n_dots = style.n_dots or float(raster.rule.density(raster.darkness).sum())
+    n_dots = style.n_dots or float(own.raster.rule.density(own.raster.darkness).sum())
     spacing = math.sqrt(outline_mm.area / max(n_dots, 1.0))
+    width_mm = BLEED_SPACINGS * spacing
+    beyond = _beyond(task, width_mm, n_dots / outline_mm.area)
     x0, y0, x1, y1 = outline_mm.bounds
     if n_dots < FEWEST_WITH_BLEED or min(x1 - x0, y1 - y0) < LEAST_WIDTH * spacing:
+        borders = Borders(outline_mm)
+    borders = replace(borders, cut=beyond.cut)
+    if not (borders.bleeding or task.seen_mm):
         return own
-    wide = WideGround(reference, own, borders, BLEED_SPACINGS * spacing)
-    return wide if wide.bleeds else own
+    wide = WideGround(task, own, borders, width_mm, beyond)
+    return wide if wide.evens_rim or task.seen_mm else own
+
+
+def _beyond(task: Task, width_mm: float, per_mm2: float) -> Beyond:
+    around = task.neighbours_mm
+    if not task.seen_mm or around is None:
+        return NOTHING
+    return Beyond.of(task.seen_mm, task.parts_mm[0], around, width_mm, per_mm2)
 
 
 class WideGround(AreaGround):
-    """An area and a strip beyond the lines that bleed.
+    """An area, a strip beyond the lines that bleed, and what is seen of its neighbours.
 
     Parameters
     ----------
@@ -59,28 +73,55 @@ class WideGround(AreaGround):
         The area itself; it takes over the rule for dots of which some are trimmed.
     """
 
+    bleeds = True
+
     def __init__(
-        self, reference: Reference, own: AreaGround, borders: Borders, width_mm: float
+        self, task: Task, own: AreaGround, borders: Borders, width_mm: float, beyond: Beyond
     ) -> None:
-        whole, style = borders.grown(width_mm), own.style
+        reference, style = task.reference, own.style
+        assert reference is not None, "an area is drawn from a picture"
+        whole = beyond.joined_to(borders.grown(width_mm))
         if style.n_dots is not None:
             n_dots = max(round(style.n_dots * whole.area / borders.outline.area), 1)
             style = replace(style, n_dots=n_dots)
         super().__init__(reference, style, whole, width_mm)
-        self.style, self._own, self._borders = own.style, own, borders
-        edge = np.concatenate([
-            self.darkness_at(along_line(line, max(round(line.length / own.raster.pixel_mm), 1)))
+        self.style, self._own, self._borders, self._seen = own.style, own, borders, beyond
+        rule, side = own.raster.rule, own.raster.pixel_mm
+        edge = [
+            self.darkness_at(along_line(line, max(round(line.length / side), 1)))
             for line in borders.bleeding
-        ])  # fmt: skip
-        self.bleeds = bool(edge.any())
-        if not self.bleeds:
-            return
-        side, sizes = own.raster.pixel_mm, style.size_range_mm
-        in_px = None if sizes is None else (sizes[0] / side, sizes[1] / side)
-        rule = rule_for(own.raster.darkness, own.style.n_dots, in_px, edge)
-        own.raster = replace(own.raster, rule=rule)
+        ]
+        self.evens_rim = any(dark.any() for dark in edge)
+        if self.evens_rim:
+            sizes = style.size_range_mm
+            in_px = None if sizes is None else (sizes[0] / side, sizes[1] / side)
+            darkness = own.raster.darkness
+            rule = rule_for(darkness, own.style.n_dots, in_px, np.concatenate(edge))
+            own.raster = replace(own.raster, rule=rule)
         self.raster = replace(self.raster, rule=_scaled(rule, side / self.raster.pixel_mm))
-        own.rim = Rim(borders, self.raster, self.origin_mm)
+        if self.evens_rim:
+            own.rim = Rim(borders, self.raster, self.origin_mm)
+        if beyond.strips:
+            assert task.neighbours_mm is not None, "their dots are seen"
+            at = task.neighbours_mm[beyond.rows] - np.array(self.origin_mm)
+            self.beyond = self.inside(at) / self.raster.pixel_mm
+            own.see(beyond.seen_with(own.on_page_mm), task.neighbours_mm[beyond.rows])
+
+    def open_to_dots(self, density: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return dots per square pixel without any where the neighbours' are."""
+        if not len(self.beyond):
+            return density
+        closed = np.ones_like(density)
+        for strip in self._seen.strips:
+            edges = edges_of(strip) - np.tile(self.origin_mm, 2)
+            mine = np.ones_like(density)
+            outside_polygon(edges / self.raster.pixel_mm, mine)
+            closed[mine > 0.0] = 0.0
+        density *= closed
+        wanted = float(density.sum(dtype=np.float64))
+        density = without_dots_at(density, self.beyond)
+        left = float(density.sum(dtype=np.float64))
+        return density * np.float32(wanted / left) if left > 0.0 else density
 
     @property
     def after_trim(self) -> Ground:
@@ -95,6 +136,10 @@ class WideGround(AreaGround):
         """Return the dots of the area, and those of the strip that reach into it."""
         own, side = self._own, self.raster.pixel_mm
         at = points * side + np.array(self.origin_mm)
+        strayed = self._seen.hold(at)
+        at[strayed] = own.inside(at[strayed] - np.array(own.origin_mm)) + np.array(own.origin_mm)
+        if not (self._borders.bleeding or self._borders.cut):
+            return own.trimmed((at - np.array(own.origin_mm)) / own.raster.pixel_mm, n_wanted)
         radius = self.raster.radii(points) * side
         kept, at = self._borders.trimmed(at, radius, n_wanted)
         return own.inside(at[kept] - np.array(own.origin_mm)) / own.raster.pixel_mm

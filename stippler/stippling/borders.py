@@ -16,8 +16,16 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiPolygon, Polygon
 
-from stippler.drawing.style import BLEED, WALL
+from stippler.drawing.style import AUTOMATIC, BLEED, THROUGH, WALL
 from stippler.kernels.tone.edge_ink import even_rim
+from stippler.stippling.border_policies import (
+    ON_LINE_MM,
+    Pieces,
+    edges_in,
+    merged,
+    policies_at,
+    polygons_in,
+)
 from stippler.stippling.halftone_area import edges_of
 from stippler.stippling.tone import DotRule
 
@@ -27,6 +35,7 @@ _NEAR = 1.6  # radii; dots so near a line may come to touch it
 _LINE = 0.15  # radii; how far inside it the ink is compared
 _SAMPLES = 4.0  # of the darkness along a line for each of the smallest radii
 _ON_EDGE_MM = 2e-3  # a border so near the page's edge lies on it
+_WHOLE = 1e-9  # of a border
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -44,29 +53,39 @@ class Borders:
     bleeding : tuple of LineString, mm
         Those lines, joined end to end.
     sides : tuple of (axis, whether it is the far one, place in mm)
-        The sides of the page that they lie on; none if all of the outline bleeds.
+        The sides of the page that some of them lie on, where the picture is mirrored.
+    open : tuple of LineString, mm
+        Those of them beyond which the picture goes on as it is.
+    cut : tuple of LineString, mm
+        Lines at which dots are cut off, and none is drawn back to unless one is missing.
     """
 
     outline: Outline
     bleeding: tuple[LineString, ...] = ()
     sides: tuple[Side, ...] = ()
+    open: tuple[LineString, ...] = ()
+    cut: tuple[LineString, ...] = ()
 
     @classmethod
-    def of(cls, outline: Outline, policy: str, size_mm: tuple[float, float]) -> Borders:
-        """Take an area on a page by the policy of its style."""
-        if policy == WALL:
+    def of(
+        cls, outline: Outline, policy: str, size_mm: tuple[float, float], pieces: Pieces = ()
+    ) -> Borders:
+        """Take an area on a page by the policy of its border, and by what pieces of it say."""
+        if policy == WALL and not pieces:
             return cls(outline)
         edges = edges_of(outline)
-        if policy == BLEED:
-            return cls(outline, _joined(edges))
-        sides, found = list[Side](), np.zeros(len(edges), np.bool_)
-        for axis in (0, 1):
-            for is_far, at in ((False, 0.0), (True, size_mm[axis])):
-                off = np.abs(edges[:, [axis, axis + 2]] - at).max(axis=1)
-                if (off < _ON_EDGE_MM).any():
-                    found |= off < _ON_EDGE_MM
-                    sides.append((axis, is_far, outline.bounds[axis + 2 * is_far]))
-        return cls(outline, _joined(edges[found]), tuple(sides))
+        said = policies_at(edges, pieces)
+        said[said == ""] = policy
+        runs_off = said == BLEED
+        at_edge, sides = np.zeros(len(edges), np.bool_), list[Side]()
+        for axis, is_far in ((0, False), (0, True), (1, False), (1, True)):
+            on = _on_side(edges, axis, size_mm[axis] if is_far else 0.0)
+            on &= (said == AUTOMATIC) | (said == THROUGH)
+            if on.any():
+                at_edge |= on
+                sides.append((axis, is_far, outline.bounds[axis + 2 * is_far]))
+        bleeding = runs_off | at_edge
+        return cls(outline, joined(edges[bleeding]), tuple(sides), joined(edges[runs_off]))
 
     def grown(self, width_mm: float) -> Outline:
         """Return the outline with a strip of this width beyond what bleeds.
@@ -76,18 +95,34 @@ class Borders:
         """
         if not self.bleeding:
             return self.outline
-        if not self.sides:
-            return _polygons(shapely.buffer(self.outline, width_mm, join_style="mitre"))
+        length = sum(line.length for line in self.open)
+        if length >= (1.0 - _WHOLE) * self.outline.length:
+            return polygons_in(shapely.buffer(self.outline, width_mm, join_style="mitre"))
         shape: shapely.Geometry = self.outline
-        for axis, is_far, at in self.sides:
-            box = list(shape.bounds)
-            box[axis + 2 * (not is_far)] = at - width_mm if is_far else at + width_mm
-            strip = shapely.intersection(shape, shapely.box(*box))
-            sign, shift = np.ones(2), np.zeros(2)
-            sign[axis], shift[axis] = -1.0, 2.0 * at
-            beyond = shapely.transform(strip, lambda xy, s=sign, t=shift: s * xy + t)
-            shape = shapely.union(shape, beyond)
-        return _polygons(shape)
+        for side in self.sides:
+            shape = self._mirrored(shape, side, width_mm)
+        strips = [one for line in self.open for one in strips_beyond(line, self.outline, width_mm)]
+        return polygons_in(shapely.union_all([shape, *strips]) if strips else shape)
+
+    def _mirrored(self, shape: shapely.Geometry, side: Side, width_mm: float) -> shapely.Geometry:
+        """Return a shape with what lies along a side of the page, and bleeds there, mirrored."""
+        axis, is_far, at = side
+        box = list(shape.bounds)
+        box[axis + 2 * (not is_far)] = at - width_mm if is_far else at + width_mm
+        strip = shapely.intersection(shape, shapely.box(*box))
+        sign, shift = np.ones(2), np.zeros(2)
+        sign[axis], shift[axis] = -1.0, 2.0 * at
+        beyond = shapely.transform(strip, lambda xy: sign * xy + shift)
+        lines, all_of_it = edges_in(shapely.multilinestrings(self.bleeding)), edges_of(self.outline)
+        lines, all_of_it = (e[_on_side(e, axis, at)] for e in (lines, all_of_it))
+        across = [1 - axis, 3 - axis]
+        spans = np.sort(lines[:, across], axis=1)
+        if np.ptp(spans, axis=1).sum() < np.abs(np.diff(all_of_it[:, across])).sum() - _ON_EDGE_MM:
+            low, high = (at, at + width_mm) if is_far else (at - width_mm, at)
+            boxes = np.empty((len(spans), 4))
+            boxes[:, axis], boxes[:, axis + 2], boxes[:, across] = low, high, spans
+            beyond = shapely.intersection(beyond, shapely.union_all(shapely.box(*boxes.T)))
+        return shapely.union(shape, beyond)
 
     def trimmed(
         self, position_mm: Floats, radius_mm: Floats, n_wanted: int | None = None
@@ -100,7 +135,7 @@ class Borders:
         inside = shapely.intersects_xy(self.outline, position_mm[:, 0], position_mm[:, 1])
         kept, beyond = np.flatnonzero(inside), np.flatnonzero(~inside)
         at = np.array(position_mm, np.float64)
-        line = shapely.multilinestrings(self.bleeding)
+        line = shapely.multilinestrings([*self.bleeding, *self.cut])
         if n_wanted is not None and len(kept) > n_wanted:
             inwards = shapely.distance(line, shapely.points(at[kept]))
             return np.sort(kept[np.argsort(inwards, kind="stable")[len(kept) - n_wanted :]]), at
@@ -108,6 +143,7 @@ class Borders:
             way = shapely.shortest_line(line, shapely.points(at[beyond]))
             foot = shapely.get_coordinates(way)[::2]
             depth = shapely.length(way) / radius_mm[beyond]
+            depth[self._at_cut(foot)] += DotRule.BLEED_REACH
             rank = np.argsort(depth, kind="stable")
             n = int(np.searchsorted(depth[rank], DotRule.BLEED_REACH))
             if n_wanted is not None:
@@ -119,6 +155,13 @@ class Borders:
             )
             kept = np.sort(np.concatenate([kept, beyond[back]]))
         return kept, at
+
+    def _at_cut(self, foot: Floats) -> NDArray[np.bool_]:
+        """Tell which places on the lines are on those that dots are cut off at."""
+        if not self.cut:
+            return np.zeros(len(foot), np.bool_)
+        lines = shapely.multilinestrings(self.cut)
+        return np.asarray(shapely.dwithin(shapely.points(foot), lines, ON_LINE_MM))
 
     def near(self, position_mm: Floats, reach_mm: float) -> NDArray[np.bool_]:
         """Tell which dots lie so near a line that bleeds."""
@@ -210,18 +253,22 @@ def along_line(line: LineString, n: int) -> Floats:
     return np.asarray(shapely.get_coordinates(shapely.line_interpolate_point(line, at)))
 
 
-def _joined(edges: Floats) -> tuple[LineString, ...]:
-    if not len(edges):
-        return ()
-    merged = shapely.line_merge(
-        shapely.multilinestrings(shapely.linestrings(edges.reshape(-1, 2, 2)))
-    )
-    return tuple(shapely.get_parts(merged))
+def joined(edges: Floats) -> tuple[LineString, ...]:
+    """Return edges (m, 4) as lines, joined end to end."""
+    return tuple(merged(edges).geoms)
 
 
-def _polygons(shape: shapely.Geometry) -> Outline:
-    parts: list[Polygon] = [p for p in shapely.get_parts(shape) if isinstance(p, Polygon)]
-    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+def strips_beyond(line: LineString, outline: Outline, width_mm: float) -> list[Polygon]:
+    """Return what lies along a piece of an outline's border on its outside, so far from it."""
+    around = shapely.buffer(line, width_mm, cap_style="flat", join_style="mitre")
+    parts = shapely.get_parts(shapely.difference(around, outline))
+    met = shapely.length(shapely.intersection(parts, line))
+    return [p for p, n in zip(parts, met, strict=True) if isinstance(p, Polygon) and n > 0.0]
+
+
+def _on_side(edges: Floats, axis: int, at: float) -> NDArray[np.bool_]:
+    """Tell which edges lie on a line x = `at`, or y."""
+    return np.asarray(np.abs(edges[:, [axis, axis + 2]] - at).max(axis=1) < _ON_EDGE_MM)
 
 
 def _inside_of(outline: Outline, at: Floats, inset: Floats) -> Floats:

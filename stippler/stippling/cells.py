@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,18 @@ Rows = NDArray[np.int32]
 Question = Callable[[], bool] | None
 Redirect = Callable[[Floats, Floats], Floats]
 """Given where dots are and where a step would take them, (n, 2) mm, returns where they shall go."""
+
+
+@runtime_checkable
+class Crossing(Protocol):
+    """A `Redirect` that may send some dots into other compartments, `may_cross` by dot."""
+
+    may_cross: NDArray[np.bool_]
+
+    def __call__(self, before: Floats, wanted: Floats) -> Floats:
+        """Return where dots shall go."""
+        ...
+
 
 CORNER_CAP = 64
 GRAIN = 4096
@@ -185,10 +197,25 @@ class Cells:
         owner = self.compartment_of_dot[rows]
         near = np.flatnonzero(~(gone < free) | (self.parts.kind[owner] == RECTANGLE))
         out = near[~self.parts.contain(at[near], owner[near])]
+        if len(out) and isinstance(redirect, Crossing):
+            out = self._cross(rows, at, out, redirect.may_cross)
         at[out] = np.column_stack([self.xs[rows[out]], self.ys[rows[out]]])
         gone[out] = 0.0
         new.x[rows], new.y[rows] = at.T
         new.gone[rows], new.free[rows] = gone, free - gone
+
+    def _cross(
+        self, rows: NDArray[np.intp], at: Floats, out: NDArray[np.intp], may: NDArray[np.bool_]
+    ) -> NDArray[np.intp]:
+        """Let dots go to the compartments they are sent to; return those of `out` that cannot."""
+        asked = out[may[self.order[rows[out]]]]
+        found = self.parts.at(at[asked])
+        goes = asked[found >= 0]
+        if len(goes):
+            self.compartment_of_dot = self.compartment_of_dot.copy()
+            self.compartment_of_dot[rows[goes]] = found[found >= 0]
+            self._slack, self._has_stars = np.inf, False  # all is found anew
+        return np.setdiff1d(out, goes)
 
     def measure(self, weighted: bool) -> Floats:
         """Return mass, centroid from the dot, area, second moment of cells, in the order given."""

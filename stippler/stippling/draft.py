@@ -53,7 +53,7 @@ class Draft:
         assert reference is not None, "only relaxation does without a reference"
         ground: Ground
         if task.parts_mm:
-            ground = area_ground(reference, style, task.parts_mm[0], bleeds=task.kind == STIPPLE)
+            ground = area_ground(task)
         else:
             ground = PageGround(reference, style, with_bleed=task.kind == STIPPLE)
         draft = cls(task, ground, np.empty((0, 2)))

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from stippler.stippling.draft import Draft, Floats
 from stippler.stippling.grids import grid, rows_along
+from stippler.stippling.ground import without_dots_at
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.halftone import sizes_by_region
 from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
@@ -68,15 +68,10 @@ def placed(draft: Draft) -> Iterator[tuple[float, Floats]]:
 
 def density_of(draft: Draft) -> NDArray[np.float32]:
     """Return dots per square pixel; none where dots stand already."""
-    density = draft.raster.density()
+    density = draft.ground.open_to_dots(draft.raster.density())
     if not len(draft.stand):
         return density
-    h, w = density.shape
-    x, y = (draft.stand + draft.raster.bleed).astype(np.intp).T
-    free = np.ones(density.shape, np.bool_)
-    free[np.clip(y, 0, h - 1), np.clip(x, 0, w - 1)] = False
-    distance = distance_transform_edt(free)
-    density[np.pi * np.square(distance) * density < 1.0] = 0.0
+    density = without_dots_at(density, draft.stand + draft.raster.bleed)
     total = float(density.sum(dtype=np.float64))
     if draft.n_wanted is not None and total > 0.0:
         density *= np.float32(draft.n_wanted / total)

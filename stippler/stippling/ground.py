@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
@@ -36,6 +37,7 @@ Within = tuple[Compartments, NDArray[np.int32]]
 _INSET = 1e-4  # of a pixel; how far within the border a dot lies that was brought back
 _LEAST_SIDE = 48  # pixels a side of an area's window, at least: its outline is cut out of them
 _DOTS_PER_PIXEL = 0.1
+_NOBODY = np.empty((0, 2))
 _FEWEST = 500
 _GRID_RADII = (0.1, 0.75)  # of the largest, and of the spacing: sizes carry all of the tone there
 
@@ -75,6 +77,25 @@ class Ground(Protocol):
     @property
     def bleeds(self) -> bool:
         """Whether dots are laid out beyond an edge, and trimmed."""
+        ...
+
+    @property
+    def evens_rim(self) -> bool:
+        """Whether there is an edge that dots run off."""
+        ...
+
+    @property
+    def beyond(self) -> Floats:
+        """Dots of others that are seen across a border, in pixels."""
+        ...
+
+    @property
+    def sized_among(self) -> Floats:
+        """Dots of others among whose cells the sizes are solved, in pixels."""
+        ...
+
+    def open_to_dots(self, density: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return dots per square pixel without any where others' dots are seen."""
         ...
 
     @property
@@ -135,6 +156,25 @@ class PageGround:
         return self.raster.bleed > 0
 
     @property
+    def evens_rim(self) -> bool:
+        """Whether the page has a bleed."""
+        return self.bleeds
+
+    @property
+    def beyond(self) -> Floats:
+        """Return none: nobody is beyond the page."""
+        return _NOBODY
+
+    @property
+    def sized_among(self) -> Floats:
+        """Return none."""
+        return _NOBODY
+
+    def open_to_dots(self, density: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the density as it is."""
+        return density
+
+    @property
     def after_trim(self) -> Ground:
         """Return itself."""
         return self
@@ -165,7 +205,10 @@ class AreaGround:
     rim: Rim | None = None
     """Where dots may bleed, once they are trimmed."""
 
-    bleeds = False
+    bleeds = evens_rim = False
+
+    beyond = _NOBODY
+    """Dots of others that are seen across the border, in pixels."""
 
     def __init__(
         self, reference: Reference, style: Style, outline_mm: Outline, bleed_mm: float = 0.0
@@ -188,8 +231,24 @@ class AreaGround:
         field = PictureField.of(reference, (curves,), bleed_mm=bleed_mm)
         self._field = replace(field, origin_mm=(-x0, -y0))
         self._parts = Compartments.of(shapely.transform(self._outline, self._to_px))
-        self._on_page = outline_mm
+        self.on_page_mm = outline_mm
+        self.sized_among = _NOBODY
+        self._sized_in = self._parts
         shapely.prepare([self._outline, outline_mm])
+
+    def see(self, outline_mm: Outline, position_mm: Floats) -> None:
+        """Let dots be sized among others that are seen across the border.
+
+        Parameters
+        ----------
+        outline_mm : polygon
+            The area and what is seen.
+        position_mm : (k, 2) float64
+            Of the dots there.
+        """
+        local = shapely.transform(outline_mm, lambda xy: self._to_px(xy - self.origin_mm))
+        self._sized_in = Compartments.of(local)
+        self.sized_among = self._to_px(position_mm - np.array(self.origin_mm))
 
     def _to_px(self, xy: Floats) -> Floats:
         return np.asarray(xy / self.raster.pixel_mm)
@@ -215,9 +274,9 @@ class AreaGround:
     def on_page(self, at_mm: Floats) -> Floats:
         """Return where places in mm from the corner lie on the page: within the outline there."""
         at: Floats = at_mm + np.array(self.origin_mm)
-        out = np.flatnonzero(~shapely.contains_xy(self._on_page, at[:, 0], at[:, 1]))
+        out = np.flatnonzero(~shapely.contains_xy(self.on_page_mm, at[:, 0], at[:, 1]))
         if len(out):
-            at[out] = brought_into(self._on_page, at[out], _INSET * self.raster.pixel_mm)
+            at[out] = brought_into(self.on_page_mm, at[out], _INSET * self.raster.pixel_mm)
         at.flags.writeable = False
         return at
 
@@ -226,11 +285,11 @@ class AreaGround:
         return self._parts, self._parts.find(points, None)
 
     def cells(self, points: Floats) -> Tessellation | None:
-        """Return the dots' cells, cut at the border."""
+        """Return the dots' cells, cut at the border, or with those that are seen across it."""
         side = self.raster.pixel_mm
         (w, h), (x, y) = self._field.pixel_mm, self._field.origin_mm
         field = replace(self._field, pixel_mm=(w / side, h / side), origin_mm=(x / side, y / side))
-        return Tessellation.of(points, list(self._parts.polygons), None, field)
+        return Tessellation.of(points, list(self._sized_in.polygons), None, field)
 
     @property
     def after_trim(self) -> Ground:
@@ -241,6 +300,10 @@ class AreaGround:
         """Return all dots, those that lie outside brought back."""
         side = self.raster.pixel_mm
         return self.inside(self.raster.trim(points, n_wanted) * side) / side
+
+    def open_to_dots(self, density: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the density as it is."""
+        return density
 
     def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
         """Even out the ink along the lines that bleed."""
@@ -267,6 +330,17 @@ def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> Pa
         largest = _GRID_RADII[1] * math.sqrt(inked / style.n_dots)
         raster = replace(raster, rule=DotRule(_GRID_RADII[0] * largest, largest))
     return raster
+
+
+def without_dots_at(density: NDArray[np.float32], points: Floats) -> NDArray[np.float32]:
+    """Return dots per square pixel without the room of dots that are there, in its pixels."""
+    h, w = density.shape
+    x, y = points.astype(np.intp).T
+    free = np.ones(density.shape, np.bool_)
+    free[np.clip(y, 0, h - 1), np.clip(x, 0, w - 1)] = False
+    distance = distance_transform_edt(free)
+    density[np.pi * np.square(distance) * density < 1.0] = 0.0
+    return density
 
 
 def counted(style: Style, mm2: float) -> Style:

@@ -14,9 +14,8 @@ from stippler.stippling.draft import Draft, Floats
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
-from stippler.stippling.radii import solve_radii
+from stippler.stippling.radii import Sizes
 from stippler.stippling.stretched import InkOfShapes, is_stretched, shapes_of
-from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
 
 _PARTED, _LAST = 40, 200  # thousandths of the work on the tone before sizes are solved
@@ -78,34 +77,34 @@ def onto_ink(draft: Draft, watched: bool) -> Iterator[Step]:
 
 def radii(draft: Draft, watched: bool) -> Iterator[Step]:
     """Solve the sizes, so that the ink meets the tone."""
-    n = len(draft.stand)
-    points = np.concatenate((draft.stand, draft.points)) if n else draft.points
+    there, is_long = draft.stand, is_stretched(draft.style)
+    if not is_long:
+        there = np.concatenate((draft.ground.sized_among, there))
+    n = len(there)
+    points = np.concatenate((there, draft.points)) if n else draft.points
     cells = draft.ground.cells(points) if len(points) else None
     raster = draft.raster
-    for share, solved in solve_radii(points, raster.darkness, raster.rule, tessellation=cells):
-        if share < 1.0:
-            yield Step(TONED, round(_LAST + (1000 - _LAST) * share), 1000)
-        else:
-            draft.radii = solved[n:]
-    if is_stretched(draft.style) and len(points) and raster.rule.varies:
-        draft.radii = _for_long_dots(draft, points, solved, cells)[n:]
+    sizes = Sizes(points, raster.darkness, raster.rule, tessellation=cells)
+    if len(points):
+        for share in sizes.prepare():
+            yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
+        for share in sizes.solve():
+            yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
+    if is_long and len(points) and raster.rule.varies:
+        _for_long_dots(draft, points, sizes)
+    draft.radii = sizes.radii[n:]
 
 
-def _for_long_dots(
-    draft: Draft, points: Floats, radii: Floats, cells: Tessellation | None
-) -> Floats:
+def _for_long_dots(draft: Draft, points: Floats, sizes: Sizes) -> None:
     """Solve the sizes anew until what long dots ink meets the tone."""
     raster, reference = draft.raster, draft.task.reference
     assert reference is not None, "sizes by tone need a picture"
     ink = InkOfShapes(raster.darkness, points, draft.style.seed)
     at_mm = points * raster.pixel_mm + np.array(draft.ground.origin_mm)
-    dots = shapes_of(at_mm, radii * raster.pixel_mm, draft.style, reference)
+    dots = shapes_of(at_mm, sizes.radii * raster.pixel_mm, draft.style, reference)
     for _ in range(_ROUNDS_OF_LONG):
-        gain = ink.gain(radii, dots)
-        *_, (_, radii) = solve_radii(
-            points, raster.darkness, raster.rule, tessellation=cells, gain=gain
-        )
-    return radii
+        for _share in sizes.solve(ink.gain(sizes.radii, dots)):
+            pass
 
 
 def shortfall_of(draft: Draft, watched: bool) -> Iterator[Step]:

@@ -279,19 +279,37 @@ def _even(m: Points, still: NDArray[np.bool_], whole: float, closed: bool) -> Po
 
 
 def crossings(lines: Sequence[Line]) -> list[tuple[int, float, int, float]]:
-    """Return where lines cross: (line, arc length, other line, arc length), each pair once."""
+    """Return where lines cross: (line, arc length, other line, arc length), each pair once.
+
+    Where a line crosses itself it is its own other.
+    """
     shapes = np.array([shapely.linestrings(line.path.points_mm) for line in lines])
-    tree = shapely.STRtree(shapes)
-    a, b = tree.query(shapes, predicate="crosses")
-    out: list[tuple[int, float, int, float]] = []
-    for i, j in zip(a.tolist(), b.tolist(), strict=True):
-        if i >= j:
-            continue
-        for place in shapely.get_parts(shapely.intersection(shapes[i], shapes[j])):
-            p = shapely.points(shapely.get_coordinates(place)[0])
-            s, t = (float(shapely.line_locate_point(shapes[k], p)) for k in (i, j))
-            out.append((i, s, j, t))
-    return out
+    a, b = shapely.STRtree(shapes).query(shapes, predicate="crosses")
+    once = np.flatnonzero(a < b)
+    once = once[np.lexsort((b[once], a[once]))]
+    a, b = a[once], b[once]
+    parts, pair = shapely.get_parts(shapely.intersection(shapes[a], shapes[b]), return_index=True)
+    xy, part = shapely.get_coordinates(parts, return_index=True)
+    places = shapely.points(xy[np.searchsorted(part, np.arange(len(parts)))])
+    s, t = (shapely.line_locate_point(shapes[k[pair]], places) for k in (a, b))
+    found = zip(a[pair].tolist(), s.tolist(), b[pair].tolist(), t.tolist(), strict=True)
+    loops = [(k, s, k, t) for k, line in enumerate(lines) for s, t in _own_crossings(line)]
+    return [*found, *loops]
+
+
+def _own_crossings(line: Line) -> list[tuple[float, float]]:
+    """Return the arc lengths at which a line crosses itself, the lower first."""
+    at, s = line.path.points_mm, line.arc_lengths()
+    if shapely.is_simple(shapely.linestrings(at)):
+        return []
+    segments = shapely.linestrings(np.stack([at[:-1], at[1:]], axis=1))
+    a, b = shapely.STRtree(segments).query(segments, predicate="crosses")
+    once = np.flatnonzero(a < b)
+    once = once[np.lexsort((b[once], a[once]))]
+    a, b = a[once], b[once]
+    xy = shapely.get_coordinates(shapely.intersection(segments[a], segments[b]))
+    sides = (s[k] + np.hypot(*(xy - at[k]).T) for k in (a, b))
+    return list(zip(*(side.tolist() for side in sides), strict=True))
 
 
 def spread_all(

@@ -72,7 +72,7 @@ def stages_of(draft: Draft) -> list[Stage]:
         (part, by_tone and style.is_relaxed and style.weighted
          and task.n_done < style.iterations),
         (rim, by_tone and style.weighted and style.iterations > 0 and is_new
-         and draft.ground.bleeds),
+         and draft.ground.evens_rim),
         (jitter, is_new and style.jitter > 0.0),
         (onto_ink, True),
         (radii, by_tone),
@@ -86,22 +86,23 @@ def relax(draft: Draft, watched: bool) -> Iterator[Step]:
     """Even out the dots by the steps that are left."""
     if not len(draft.points):
         return
-    n, n_done = len(draft.stand), draft.task.n_done
-    fixed = _still(draft)
-    points = np.concatenate((draft.stand, draft.points)) if n else draft.points
+    there = np.concatenate((draft.ground.beyond, draft.stand))
+    n, n_done = len(there), draft.task.n_done
+    fixed = _still(draft, n)
+    points = np.concatenate((there, draft.points)) if n else draft.points
     steps = relaxed(draft.ground, points, fixed, n_done, watched)
     for k, (moved, movement_mm) in enumerate(steps, start=n_done + 1):
         draft.points = moved[n:] if len(moved) else draft.points
         yield Step(RELAXED, k, draft.style.iterations, movement_mm)
 
 
-def _still(draft: Draft) -> np.ndarray[tuple[int], np.dtype[np.bool_]] | None:
-    """Tell which dots stay where they are.
+def _still(draft: Draft, n: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]] | None:
+    """Tell which dots stay where they are: the first n do.
 
     On a page that went on without its bleed those beside the edge do: they would else draw away
     from it and leave a light rim.
     """
-    n, fixed = len(draft.stand), draft.fixed
+    fixed = draft.fixed
     if n:
         free = np.zeros(len(draft.points), np.bool_) if fixed is None else fixed
         return np.concatenate((np.ones(n, np.bool_), free))

@@ -37,7 +37,6 @@ def solve_radii(
     rule: DotRule,
     n_dots: int | None = None,
     tessellation: Tessellation | None = None,
-    gain: NDArray[np.float64] | None = None,
 ) -> Iterator[tuple[float, NDArray[np.float64]]]:
     """Find radii at which the union of the discs meets the darkness.
 
@@ -55,8 +54,6 @@ def solve_radii(
     tessellation : Tessellation, optional
         The dots' cells in their compartments, in pixels, with the ink they ask for as `mass`: for
         areas and patterns. Else the cells are those of the page, and ask for what it is dark.
-    gain : (n,) float64, optional
-        What the ink that each cell asks for is multiplied with.
 
     Yields
     ------
@@ -69,37 +66,78 @@ def solve_radii(
     -----
     O(n); the same bits for any number of threads.
     """
-    n = len(points)
-    result = np.empty(n)
-    if n == 0:
-        yield 1.0, result
+    if len(points) == 0:
+        yield 1.0, np.empty(0)
         return
-    low, high = rule.radius_min, rule.radius_max
-    if tessellation is not None:
-        order = np.arange(n, dtype=np.int32)
-        cells = _Cells(n, min(int(tessellation.n_sides.max()) + 8, _MOST_SIDES))
-        cells.read(tessellation)
-    else:
-        order, cell_start, frame = sorted_by_place(points, darkness, n_dots or n)
-        cells = _Cells(n, MAX_CORNERS)
-        for share in cells.build(points[order], cell_start, frame, darkness):
-            yield 0.8 * share, result
-    if gain is not None:
-        cells.asked *= gain[order]
-    yield 0.8, result
-    cells.fit(low, high)
-    if low < high:
-        yield 0.8, result
-        cells.even_sizes()
+    sizes = Sizes(points, darkness, rule, n_dots, tessellation)
+    for share in sizes.prepare():
+        yield 0.8 * share, sizes.radii
+    for share in sizes.solve():
+        yield 0.8 + 0.2 * share, sizes.radii
+
+
+class Sizes:
+    """The sizes of dots whose cells are known: solved once, or anew for other ink.
+
+    Parameters are those of `solve_radii`; call `prepare` before `solve`.
+
+    Attributes
+    ----------
+    radii : (n,) float64, pixels
+        Of the last `solve`.
+    """
+
+    def __init__(
+        self,
+        points: NDArray[np.float64],
+        darkness: NDArray[np.float32],
+        rule: DotRule,
+        n_dots: int | None = None,
+        tessellation: Tessellation | None = None,
+    ) -> None:
+        self._points, self._darkness, self._rule = points, darkness, rule
+        self._n_dots, self._tessellation = n_dots or len(points), tessellation
+        self.radii = np.empty(len(points))
+
+    def prepare(self) -> Iterator[float]:
+        """Find the cells, and the ink that they ask for; yield the share done."""
+        n, given = len(self._points), self._tessellation
+        if given is not None:
+            self._order = np.arange(n, dtype=np.int32)
+            self._cells = _Cells(n, min(int(given.n_sides.max()) + 8, _MOST_SIDES))
+            self._cells.read(given)
+        else:
+            points, darkness = self._points, self._darkness
+            self._order, cell_start, frame = sorted_by_place(points, darkness, self._n_dots)
+            self._cells = _Cells(n, MAX_CORNERS)
+            yield from self._cells.build(points[self._order], cell_start, frame, darkness)
+        self._asked = self._cells.asked
+        yield 1.0
+
+    def solve(self, gain: NDArray[np.float64] | None = None) -> Iterator[float]:
+        """Find the radii; yield the share done.
+
+        Parameters
+        ----------
+        gain : (n,) float64, optional
+            What the ink that each cell asks for is multiplied with.
+        """
+        cells, (low, high) = self._cells, (self._rule.radius_min, self._rule.radius_max)
+        cells.ask(self._asked if gain is None else self._asked * gain[self._order])
+        yield 0.0
         cells.fit(low, high)
-    for k in range(_ROUNDS):
-        if np.abs(cells.left).sum() <= _ENOUGH * cells.asked.sum():
-            break
-        yield 0.8 + 0.1 * k / _ROUNDS, result
-        cells.pass_on(low, high)
-        cells.fit(low, high)
-    result[order] = cells.radii
-    yield 1.0, result
+        if low < high:
+            yield 0.0
+            cells.even_sizes()
+            cells.fit(low, high)
+        for k in range(_ROUNDS):
+            if np.abs(cells.left).sum() <= _ENOUGH * cells.asked.sum():
+                break
+            yield 0.5 * k / _ROUNDS
+            cells.pass_on(low, high)
+            cells.fit(low, high)
+        self.radii[self._order] = cells.radii
+        yield 1.0
 
 
 class _Cells:
@@ -111,6 +149,10 @@ class _Cells:
         self.n_corners = np.empty(n, np.uint8)
         self.asked, self.before = np.empty(n), np.full(n, -1.0)
         self.radii, self.left = np.empty(n), np.empty(n)
+
+    def ask(self, ink: NDArray[np.float64]) -> None:
+        """Ask each dot for so much ink."""
+        self.asked, self.before = ink, np.full(len(ink), -1.0)
 
     def read(self, cells: Tessellation) -> None:
         """Take over the cells of a tessellation; one of very many sides is solved as a free disc.

@@ -172,8 +172,8 @@ class Relaxation:
         redirect : callable, optional
             Called with where dots are and where the step would take them, (n, 2) mm each, in the
             order given, once all centroids are known; returns where they shall go instead. Fixed
-            dots stay; so does one that would be sent out of its compartment. By Lloyd's method
-            only.
+            dots stay; so does one that would be sent out of its compartment, but for those that it
+            says `may_cross` to another. Not by "delaunay-mean" and "springs".
 
         Returns
         -------

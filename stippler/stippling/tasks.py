@@ -8,21 +8,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import MultiPolygon
 
 from stippler.drawing.area import PAGE_AREA
+from stippler.drawing.dots import FREE, ON_CURVE, Dots
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.line import ADHERE, Line
 from stippler.drawing.partition import Outline, Partition
-from stippler.drawing.reference import Reference
-from stippler.drawing.style import THROUGH, Style
+from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met, pattern_of
+from stippler.stippling.beyond import seen_of
+from stippler.stippling.border_policies import BorderPolicies
+from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
+from stippler.stippling.relax_views import View, views_of
+from stippler.stippling.shares import number_of_areas, number_of_some
 from stippler.stippling.style_tone import toned_by_area
-from stippler.stippling.task import RELAX, Standing, Task
+from stippler.stippling.task import RELAX, MetLines, Standing, Task
 
 _LEAST_MARGIN_MM, _MARGIN = 1.0, 0.05  # around an area, of its side: there its neighbours lie
-_COARSE, _FINE = 128, 64  # places a side that ink is looked at, of a page and of an area
 _WHOLE = 1e-9  # of the page
 
 Rows = NDArray[np.intp]
@@ -32,6 +35,8 @@ def relaxing(
     drawing: Drawing, style: Style, steps: int, areas: Collection[int] | None = None
 ) -> tuple[Task, Rows, tuple[str, ...]]:
     """Return the task of relaxing a drawing's dots, the rows that it moves, and what is left out.
+
+    Dots that areas see through their borders come after those rows in it, and stand still.
 
     Parameters
     ----------
@@ -52,14 +57,75 @@ def relaxing(
     if areas is not None:
         mine &= np.isin(dots.area, list(areas))
     part_of_row, cut, notes = _cut(drawing, partition, mine)
+    lines = lines_met(drawing, dots.take(np.flatnonzero(mine))) if drawing.lines else None
+    views: list[View] = []
+    if lines is None:  # dots on lines stay in their areas, and see none but these
+        moved = [k for k in np.unique(part_of_row[mine]).tolist() if k >= 0]
+        views = list(views_of(drawing, partition, moved, mine))
+    for view in views:  # an area's number stands for all that are seen with it
+        own = np.flatnonzero(mine & np.isin(dots.area, view.areas))
+        mine[own[~shapely.intersects_xy(view.outline, *dots.position_mm[own].T)]] = False
+        part_of_row[own] = view.areas[0]
     rows = np.flatnonzero(mine)
-    some = dots if len(rows) == len(dots) else dots.take(rows)
-    used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
-    standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
-    parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
+    standing, used = _standing(drawing, partition, rows, part_of_row, views)
+    if lines is not None:
+        fixed = (dots.constraint[rows] != FREE) & (lines.line_of_dot < 0)
+        standing = replace(standing, fixed=fixed)
+    outlines = {view.areas[0]: view.outline for view in views}
+    parts = tuple(
+        cut[-k] if k < 0 else outlines.get(k) or partition.part_of(k) for k in used.tolist()
+    )
     if cut and reference is None and len(rows) < FEW * len(parts):
         style = replace(style, spacing="lloyd")
-    return Task(style, reference, RELAX, parts, standing, steps=steps), rows, notes
+    task = Task(style, reference, RELAX, parts, standing, steps=steps, lines=lines)
+    return task, rows, notes
+
+
+def _standing(
+    drawing: Drawing,
+    partition: Partition,
+    rows: Rows,
+    part_of_row: NDArray[np.int64],
+    views: Sequence[View],
+) -> tuple[Standing, NDArray[np.int64]]:
+    """Return the dots that are moved and those that are seen, and whose parts they lie in."""
+    dots = drawing.dots
+    everyone = np.concatenate([rows, *(view.beyond for view in views)])
+    some = dots if len(everyone) == len(dots) == len(rows) else dots.take(everyone)
+    place = np.concatenate([
+        part_of_row[rows], *(np.full(len(view.beyond), view.areas[0]) for view in views),
+    ])  # fmt: skip
+    used, part_of_dot = np.unique(place, return_inverse=True)
+    fixed = some.fixed
+    if len(everyone) > len(rows):
+        fixed = fixed | (np.arange(len(everyone)) >= len(rows))
+    homes = tuple(
+        (np.flatnonzero(dots.area[rows] == k), partition.part_of(k))
+        for view in views for k in view.areas
+    )  # fmt: skip
+    return Standing(some.position_mm, some.radius_mm, fixed, part_of_dot, homes), used
+
+
+def lines_met(drawing: Drawing, dots: Dots) -> MetLines | None:
+    """Return the lines that some of a drawing's dots lie on or may line up on; None without any.
+
+    Dots of locked areas stay where they are.
+    """
+    if not drawing.lines:
+        return None
+    lines = {k: line for k, line in drawing.lines.items() if isinstance(line, Line)}
+    locked = [k for k, area in drawing.areas.items() if area.locked]
+    moves = ~np.isin(dots.area, locked)
+    on = moves & (dots.constraint == ON_CURVE) & np.isin(dots.curve, list(lines))
+    draws = any(line.meeting == ADHERE and not line.hidden for line in lines.values())
+    if not (on.any() or draws):
+        return None
+    ids = tuple(sorted(lines))
+    which = np.searchsorted(ids, dots.curve)
+    return MetLines(
+        tuple(lines[k] for k in ids), ids, np.where(on, which, -1).astype(np.int32),
+        dots.parameter.copy(), moves & (dots.constraint == FREE),
+    )  # fmt: skip
 
 
 def _cut(
@@ -131,38 +197,16 @@ class AreaTask:
         return tuple(found)
 
 
-def joined(drawing: Drawing, areas: Sequence[int], partition: Partition) -> list[tuple[int, ...]]:
-    """Return which of some areas are drawn as one, each group where its first area is.
-
-    Those of one style are that touch along a line and see through their borders; an area under
-    a pattern is drawn by itself.
-    """
-    group = {k: k for k in areas}
-    seeing = [k for k in areas if k in drawing.areas and drawing.border_of(k) == THROUGH]
-    seeing = [k for k in seeing if pattern_of(drawing, k) is None]
-    for i, k in enumerate(seeing):
-        for other in seeing[i + 1 :]:
-            if drawing.areas[k].style != drawing.areas[other].style:
-                continue
-            shared = shapely.intersection(partition.part_of(k), partition.part_of(other))
-            if shared.length > 0.0 and group[k] != group[other]:
-                old, new = group[other], group[k]
-                group = {j: new if g == old else g for j, g in group.items()}
-    found: dict[int, list[int]] = {}
-    for k in areas:
-        found.setdefault(group[k], []).append(k)
-    return [tuple(ids) for ids in found.values()]
-
-
 def stippling(
     drawing: Drawing,
     area: int | tuple[int, ...],
     partition: Partition | None = None,
     near: Rows | None = None,
+    policies: BorderPolicies | None = None,
 ) -> AreaTask:
     """Return the task of stippling an area of a drawing anew, in its style.
 
-    Several, as `joined` tells them, are one outline; the style is that of the first.
+    Several, as `BorderPolicies.joined` tells them, are one outline; the style is that of the first.
 
     Its fixed dots stay, and new ones keep clear of those beyond its border. A number of dots is
     shared by all areas of the style, by their ink.
@@ -173,6 +217,8 @@ def stippling(
         Of the drawing, if it is known.
     near : rows, optional
         All dots that lie in the `box_around` the area.
+    policies : BorderPolicies, optional
+        Of the drawing's borders, if they are known.
 
     Raises
     ------
@@ -189,37 +235,39 @@ def stippling(
     if reference is None:
         raise ParameterError("there is no picture to stipple from", "area", "fill it with dots")
     partition = partition or Partition(drawing.outlines())
-    part = part_of_all(partition, areas)
+    policies = policies or BorderPolicies(drawing, partition)
+    part = policies.part_of_all(areas)
     if part.is_empty:
         raise GeometryError("lies under others", f"area {areas[0]}", "give it room of its own")
-    dots = drawing.dots
+    dots, around = drawing.dots, policies.seen_from(areas)
+    seen = seen_of(policies, areas)
     if near is None:
         x0, y0, x1, y1 = box_around(part)
         x, y = dots.position_mm.T
         near = np.flatnonzero((x >= x0) & (x <= x1) & (y >= y0) & (y <= y1))
+    if seen:
+        near = np.union1d(near, np.flatnonzero(np.isin(dots.area, list(around))))
     mine = np.isin(dots.area[near], areas)
     fixed, others = near[mine & dots.fixed[near]], near[~mine]
     standing = None
     if len(fixed):
         standing = Standing(dots.position_mm[fixed], dots.radius_mm[fixed])
-    style = _with_own_number(drawing, partition, areas, part, reference)
-    style = replace(style, border=drawing.border_of(areas[0]))
+    whole_group = _drawn_as_one(policies, areas) if seen else areas
+    style = number_of_areas(
+        drawing, partition, whole_group, policies.part_of_all(whole_group), reference
+    )
+    style, pieces = replace(style, border=drawing.border_of(areas[0])), policies.own_of(areas)
+    if len(whole_group) > len(areas):
+        style = number_of_some(policies, style, whole_group, areas, reference)
     whole = drawing.page.width_mm * drawing.page.height_mm
     cut = part_for_dots(drawing, areas[0], part)
     is_page = PAGE_AREA in areas and cut is part and part.area >= (1.0 - _WHOLE) * whole
+    is_page &= not pieces
     parts = () if is_page else (cut,)
     task = Task(style, reference, parts_mm=parts, standing=standing,
-                neighbours_mm=dots.position_mm[others])  # fmt: skip
+                neighbours_mm=dots.position_mm[others], pieces_mm=pieces,
+                seen_mm=() if cut is not part else seen)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], partition)
-
-
-def part_of_all(partition: Partition, areas: Sequence[int]) -> Outline:
-    """Return what several areas own together."""
-    if len(areas) == 1:
-        return partition.part_of(areas[0])
-    parts = shapely.get_parts(shapely.union_all([partition.part_of(k) for k in areas]))
-    polygons = parts[shapely.get_type_id(parts) == 3]
-    return polygons[0] if len(polygons) == 1 else MultiPolygon(polygons.tolist())
 
 
 def box_around(part: Outline) -> tuple[float, float, float, float]:
@@ -233,41 +281,7 @@ def _known(drawing: Drawing) -> str:
     return "one of " + ", ".join(f"{k} ({a.name})" for k, a in sorted(drawing.areas.items())[:20])
 
 
-def _with_own_number(
-    drawing: Drawing,
-    partition: Partition,
-    areas: tuple[int, ...],
-    part: Outline,
-    reference: Reference,
-) -> Style:
-    """Return areas' style with their share of a number that several areas have together."""
-    i = drawing.areas[areas[0]].style
-    style = drawing.styles[i]
-    others = [k for k, one in drawing.areas.items() if one.style == i and k not in areas]
-    if style.n_dots is None or not others:
-        return style
-    page = (0.0, 0.0, drawing.page.width_mm, drawing.page.height_mm)
-    rest = _ink(partition, reference, page, _COARSE, others)
-    own = _ink(partition, reference, part.bounds, _FINE, list(areas))
-    share = own / (own + rest) if own > 0.0 else 0.0
-    return replace(style, n_dots=max(round(style.n_dots * share), 1))
-
-
-def _ink(
-    partition: Partition,
-    reference: Reference,
-    box: tuple[float, float, float, float],
-    n: int,
-    areas: list[int],
-) -> float:
-    """Return about how much of a box is inked in some areas, in mm2, by n x n places."""
-    x0, y0, x1, y1 = box
-    at = (np.arange(n) + 0.5) / n
-    x, y = np.meshgrid(x0 + (x1 - x0) * at, y0 + (y1 - y0) * at)
-    owner = partition.area_at(np.column_stack((x.ravel(), y.ravel())))
-    levels = reference.source.darkness
-    rows = np.clip((y / reference.pixel_mm).astype(np.intp), 0, levels.shape[0] - 1)
-    columns = np.clip((x / reference.pixel_mm).astype(np.intp), 0, levels.shape[1] - 1)
-    ink = reference.adjustment.apply(np.ascontiguousarray(levels[rows, columns])).ravel()
-    cell = (x1 - x0) * (y1 - y0) / n**2
-    return float(ink[np.isin(owner, areas)].sum(dtype=np.float64)) * cell
+def _drawn_as_one(policies: BorderPolicies, areas: tuple[int, ...]) -> tuple[int, ...]:
+    """Return all areas that would be drawn as one with some, which come first."""
+    everyone = [*areas, *(k for k in policies.seeing if k not in areas)]
+    return next(group for group in policies.joined(everyone) if areas[0] in group)

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import ast
 import copy
+import hashlib
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,12 +39,15 @@ class Fault:
     ----------
     number : int
         Of the file's faults, in the order of `faults_of`.
+    key : str
+        Tells it from all others, as long as the function that it lies in stays as it is.
     lines : tuple of (first, last)
         Of what is changed.
     """
 
     path: str
     number: int
+    key: str
     lines: tuple[int, int]
     what: str
 
@@ -51,16 +56,28 @@ def faults_of(path: Path, root: Path) -> list[Fault]:
     """Return all faults that can be put into a file, one for each place and way."""
     tree = ast.parse(path.read_bytes())
     name = str(path.relative_to(root))
-    return [
-        Fault(name, k, (node.lineno, node.end_lineno or node.lineno), what)
-        for k, (node, what, _) in enumerate(_changes(tree))
-    ]
+    faults: list[Fault] = []
+    met: Counter[str] = Counter()
+    for part in _parts(tree):
+        digest = hashlib.blake2b(ast.dump(part).encode(), digest_size=5).hexdigest()
+        met[digest] += 1  # a part may stand twice
+        for k, (node, what, _) in enumerate(_changes(part)):
+            lines = (node.lineno, node.end_lineno or node.lineno)  # type: ignore[attr-defined]
+            key = f"{name}:{digest}.{met[digest]}.{k}"
+            faults.append(Fault(name, len(faults), key, lines, what))
+    return faults
+
+
+def _parts(tree: ast.Module) -> Iterator[ast.AST]:
+    """Return what a file consists of: functions, methods, and what stands beside them."""
+    for node in tree.body:
+        yield from node.body if isinstance(node, ast.ClassDef) else [node]
 
 
 def with_fault(path: Path, number: int) -> ast.Module:
     """Return a file's tree with one of its faults in it."""
     tree = ast.parse(path.read_bytes())
-    node, _, change = list(_changes(tree))[number]
+    node, _, change = [one for part in _parts(tree) for one in _changes(part)][number]
     changed: ast.Module = _Put(node, change(copy.deepcopy(node))).visit(tree)
     return ast.fix_missing_locations(changed)
 

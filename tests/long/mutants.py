@@ -8,12 +8,14 @@
 
 Each fault (`tests.long.faults`) is judged in a process of its own by the tests that go through its
 lines, quickest first, until one fails. A fault that runs out of time or memory is noticed. What is
-known stays in FILE and FILE.tests, so that a run can go on.
+known stays in FILE and FILE.tests, so that a run can go on, on another day too: a fault counts as
+judged as long as the function that it lies in stays as it is. `tests/long/judged.jsonl` is a FILE.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import random
 import resource
@@ -43,6 +45,7 @@ FOLDERS = ("stippler/files", "stippler/drawing")
 FAULTY = ("stippler.files", "stippler.drawing")
 MOST_S = float(os.environ.get("MUTANT_S", "60"))
 MOST_TESTS_S = MOST_S / 3
+_WALL = 6  # times the processor's time: others may use it, and a fault may wait for ever
 MOST_BYTES = 6 << 30
 
 
@@ -53,12 +56,12 @@ def main(words: Sequence[str]) -> None:
         _keep_baseline(file)
     elif what == "run":
         seed = int(words[3]) if len(words) > 3 else 1
-        done = {(r["path"], r["number"]) for r in _results(file)}
+        done = {r["key"] for r in _results(file)}
         chosen = random.Random(seed).sample(all_faults(), int(words[2]))
-        _judge_all([f for f in chosen if (f.path, f.number) not in done], file)
+        _judge_all([f for f in chosen if f.key not in done], file)
     elif what == "again":
-        alive = {(r["path"], r["number"]) for r in _results(file) if r["end"] != "noticed"}
-        _judge_all([f for f in all_faults() if (f.path, f.number) in alive], file)
+        alive = {r["key"] for r in _results(file) if r["end"] != "noticed"}
+        _judge_all([f for f in all_faults() if f.key in alive], file)
     print_score(file)
 
 
@@ -168,7 +171,7 @@ def _judge_all(faults: Sequence[Fault], file: Path) -> None:
     for n, fault in enumerate(faults):
         began = time.monotonic()
         end, by = judge(fault, covering)
-        known = {"path": fault.path, "number": fault.number, "line": fault.lines[0]}
+        known = {"key": fault.key, "line": fault.lines[0]}
         result = {**known, "what": fault.what, "end": end, "by": by}
         with file.open("a") as out:
             out.write(json.dumps(result) + "\n")
@@ -182,7 +185,7 @@ def judge(fault: Fault, covering: Covering) -> tuple[str, str]:
     tests = covering.tests_of(fault)
     if not tests:
         return "not reached", ""
-    found = _in_child(lambda: _run_tests(tests), fault, MOST_S)
+    found = _in_child(lambda: _run_tests(tests), fault, _WALL * MOST_S)
     if found is None:
         return "noticed", "time or memory"
     if found["failed"]:
@@ -228,6 +231,7 @@ def _begin_child(folder: str, fault: Fault | None) -> None:
     os.environ["HYPOTHESIS_PROFILE"] = "mutants"
     if fault is not None:
         resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(MOST_S), math.ceil(MOST_S) + 1))
         sys.meta_path.insert(0, _Finder(fault))
     out = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
@@ -278,11 +282,16 @@ def _imported_by(files: Sequence[str]) -> list[str]:
 
 
 def _results(file: Path) -> list[dict[str, Any]]:
-    """Return the last result of each fault."""
+    """Return the last result of each fault that there still is."""
     if not file.exists():
         return []
     lines: Iterator[dict[str, Any]] = map(json.loads, file.read_text().splitlines())
-    return list({(r["path"], r["number"]): r for r in lines}.values())
+    last = {r["key"]: r for r in lines}
+    return [
+        {**last[fault.key], "path": fault.path, "line": fault.lines[0]}
+        for fault in all_faults()
+        if fault.key in last
+    ]
 
 
 def print_score(file: Path) -> None:

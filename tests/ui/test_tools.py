@@ -157,6 +157,23 @@ def test_losing_the_window_ends_the_stroke_and_keeps_it(hands):
     assert not hands.box.is_busy
 
 
+@pytest.mark.parametrize("kind", ["erase", "spray", "push"])
+def test_taking_another_tool_ends_the_stroke_in_progress_and_keeps_it(hands, kind):
+    """It stayed open: "a stroke has begun already" was all that any edit did from then on."""
+    hands.use(kind)
+    hands.at(Pressed, (20, 15))
+    hands.at(Moved, (23, 17))
+    hands.at(Moved, (26, 21))
+    assert hands.document.in_stroke
+    hands.box.choose("select")
+    assert not hands.box.is_busy
+    assert not hands.document.in_stroke
+    assert len(hands.document.history.steps) == 1
+    hands.use("erase")
+    hands.drag((20, 15), (22, 15))
+    assert hands.labels[-1] == "Erase"
+
+
 def test_the_tip_is_sized_by_keys_wheel_and_shift(hands):
     hands.use("erase", radius_mm=4.0)
     hands.box.resize(1.5)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stippler.drawing.planar.graph import UNKNOWN, Graph, number_nodes
 from stippler.drawing.planar.path import Curve, Path, control_points, part_of_cubic
 from stippler.drawing.planar.planar_map import Arc, PlanarMap, Segments
+from stippler.drawing.planar.policies import inherited
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -148,6 +149,7 @@ def replaced(
     for k in taken:
         known.setdefault(before.arcs[k].box, []).append(k)
     changed: dict[int, Arc | None] = dict.fromkeys(taken)
+    made = inherited((before.arcs[k] for k in taken), made)
     next_arc = before.next_arc
     for arc in made:
         same = next((k for k in known.get(arc.box, ()) if _same(before.arcs[k], arc)), None)

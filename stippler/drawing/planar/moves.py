@@ -22,6 +22,7 @@ from stippler.drawing.planar.path import (
     with_handles,
 )
 from stippler.drawing.planar.planar_map import OUTSIDE, Arc, PlanarMap, Segments
+from stippler.drawing.planar.policies import with_policies_of
 from stippler.drawing.planar.slivers import is_sliver, without_slivers
 from stippler.drawing.planar.swept import jumps_of
 from stippler.errors import GeometryError
@@ -311,6 +312,7 @@ def _clean(path: Path) -> Path:
 
 def _moved(before: PlanarMap, changed: dict[int, Arc]) -> Outcome:
     """Put moved arcs in place, if areas keep apart."""
+    changed = {k: with_policies_of(before.arcs[k], a) for k, a in changed.items()}
     changed = {k: a for k, a in changed.items() if a != before.arcs[k]}
     if not changed:
         return Outcome(before)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.planar.path import UNIT_MM, Path, Points
+from stippler.drawing.planar.policies import Run, checked_runs
 from stippler.drawing.planar.rings import HalfEdge, Part, parts_of
 from stippler.errors import GeometryError
 
@@ -31,6 +32,8 @@ class Arc:
     ----------
     left, right : int
         The areas beside it: going along x, left is towards greater y.
+    policies : tuple of (first vertex, last vertex, policy)
+        Runs that are to dots something else than the areas beside them say; see `policies`.
     box, start, end
         Its box and its nodes, in units of the grid.
     """
@@ -38,6 +41,7 @@ class Arc:
     path: Path
     left: int
     right: int
+    policies: tuple[Run, ...] = ()
     box: Box = field(init=False, compare=False, repr=False)
     start: tuple[int, int] = field(init=False, compare=False, repr=False)
     end: tuple[int, int] = field(init=False, compare=False, repr=False)
@@ -50,12 +54,15 @@ class Arc:
 
     def to_json(self) -> dict[str, Any]:
         """Return it as plain values."""
-        return {"path": self.path.to_json(), "left": self.left, "right": self.right}
+        data = {"path": self.path.to_json(), "left": self.left, "right": self.right}
+        return data | ({"policies": [list(run) for run in self.policies]} if self.policies else {})
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
         """Make it of plain values."""
-        return cls(Path.from_json(data["path"]), int(data["left"]), int(data["right"]))
+        path = Path.from_json(data["path"])
+        runs = checked_runs(data.get("policies", ()), len(path))
+        return cls(path, int(data["left"]), int(data["right"]), runs)
 
 
 class PlanarMap:
@@ -208,19 +215,21 @@ class PlanarMap:
 
         By shapely's judgement, independent of what edits check for themselves. Where areas touch
         themselves in the same node, `coverage_is_valid` (GEOS 3.13) may find fault with borders
-        that match; there the interiors are compared pair by pair, and the sizes with the page's.
+        that match; there the interiors are compared pair by pair. It finds no gaps: sizes do.
         """
         outlines = np.array([self.outline(k) for k in self.areas])
         if not shapely.is_valid(outlines).all():
             raise GeometryError("cross themselves", "areas")
+        page = shapely.box(*shapely.total_bounds(outlines))
+        if abs(shapely.area(outlines).sum() - page.area) > 1e-9 * page.area:
+            raise GeometryError("overlap or leave gaps", "areas")
         if shapely.coverage_is_valid(outlines):
             return
         odd = outlines[~shapely.is_empty(shapely.coverage_invalid_edges(outlines))]
         first, second = shapely.STRtree(outlines).query(odd, predicate="intersects")
         apart = shapely.relate_pattern(odd[first], outlines[second], "F********")
         apart |= odd[first] == outlines[second]
-        page = shapely.box(*shapely.total_bounds(outlines))
-        if not apart.all() or abs(shapely.area(outlines).sum() - page.area) > 1e-9 * page.area:
+        if not apart.all():
             raise GeometryError("overlap or leave gaps", "areas")
 
 

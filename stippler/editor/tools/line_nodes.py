@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from stippler.drawing.one_step import as_one_step
 from stippler.drawing.planar.path import Path
 from stippler.editor.line_edits import lines_of, meet, set_line
 from stippler.editor.tools.line_choice import line_at
@@ -98,8 +99,9 @@ def _check(document: Document, paths: Mapping[int, Path]) -> None:
 
 
 def _make(document: Document, label: str, paths: Mapping[int, Path]) -> None:
-    document.begin(label)
-    for k, path in paths.items():
-        set_line(document, k, replace(lines_of(document)[k], path=path))
-        meet(document, k)
-    document.commit()
+    def act(document: Document) -> None:
+        for k, path in paths.items():
+            set_line(document, k, replace(lines_of(document)[k], path=path))
+            meet(document, k)
+
+    as_one_step(document, label, act)

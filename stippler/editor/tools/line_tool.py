@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from stippler.drawing.one_step import as_one_step
 from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, KeyDown, Pressed
 from stippler.editor.line_edits import lines_of, set_line
@@ -77,10 +78,12 @@ class LineTool(Tool):
 
     def _deleted(self, desk: Desk) -> ToolState:
         chosen = desk.lines.alive(desk.document)
-        desk.document.begin("Delete lines" if len(chosen) > 1 else "Delete line")
-        for k in chosen:
-            set_line(desk.document, k, None)
-        desk.document.commit()
+
+        def act(document: Document) -> None:
+            for k in chosen:
+                set_line(document, k, None)
+
+        as_one_step(desk.document, "Delete lines" if len(chosen) > 1 else "Delete line", act)
         return RESTING
 
     def line(self, path: LinePath, document: Document) -> Line:

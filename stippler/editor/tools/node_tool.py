@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from stippler.editor.events import LEFT, Event, KeyDown, Moved, Pressed
 from stippler.editor.messages import WARNING
+from stippler.editor.tools.border_pieces import BORDER_COMMANDS, pieces_text
 from stippler.editor.tools.line_nodes import LineNodes
 from stippler.editor.tools.node_index import NodeIndex, Owned
 from stippler.editor.tools.node_source import BorderNodes, Node, NodeSource, Trial
@@ -46,6 +47,7 @@ class Held:
         self.source = source
         self.index = NodeIndex(joins=source.joins)
         self.chosen: set[Owned] = set()
+        self._piece: tuple[Node, set[Owned]] | None = None
         self._key: object = None
         self._of: Document | None = None
 
@@ -64,6 +66,19 @@ class Held:
         """The chosen nodes, of each path that has them."""
         return self.index.nodes(self.chosen)
 
+    def press(self, ends: tuple[Node, Node]) -> set[Owned]:
+        """Note which piece was pressed; return the nodes at its ends."""
+        owned = {self.index.owned(node) for node in ends}
+        self._piece = (ends[0], owned)
+        return owned
+
+    @property
+    def pressed(self) -> Node | None:
+        """Where the piece begins that was pressed, while its ends are what is chosen."""
+        if self._piece is None or self._piece[1] != self.chosen:
+            return None
+        return self._piece[0]
+
 
 class NodeTool(Tool):
     """Chooses, drags, adds, removes nodes; bends what lies between them.
@@ -76,6 +91,7 @@ class NodeTool(Tool):
 
     commands = (
         "nodes.smooth", "nodes.corner", "nodes.add", "nodes.remove", "nodes.none",
+        *(f"nodes.{name}" for name in BORDER_COMMANDS),
     )  # fmt: skip
     shows_areas = True
 
@@ -83,6 +99,7 @@ class NodeTool(Tool):
         super().__init__()
         self.held = [Held(source()) for source in SOURCES]
         self._clicked: tuple[float, Point] = (-1.0, (0.0, 0.0))
+        self._document: Document | None = None
 
     # --- input --------------------------------------------------------------------------------
 
@@ -107,7 +124,7 @@ class NodeTool(Tool):
                 return self._node(held, node, at, px, desk)
         for held in self.held:
             if ends := held.index.piece_at(at, desk.mm(PIECE_PX)):
-                self._choose(held, {held.index.owned(node) for node in ends}, desk)
+                self._choose(held, held.press(ends), desk)
                 return Dragging(self, held, at, px)
         return Boxing(self, at, px)
 
@@ -160,6 +177,7 @@ class NodeTool(Tool):
 
     def update(self, document: Document) -> None:
         """Look at a document's paths, where they are others."""
+        self._document = document
         for held in self.held:
             held.update(document)
 
@@ -167,7 +185,10 @@ class NodeTool(Tool):
     def chosen_text(self) -> str:
         """Say how many nodes are chosen."""
         n = self.n_chosen
-        return f"{n:,} {'node' if n == 1 else 'nodes'} chosen" if n else "No nodes chosen"
+        if not n or self._document is None:
+            return "No nodes chosen"
+        pieces = pieces_text(self._document, self.held)
+        return f"{n:,} {'node' if n == 1 else 'nodes'} chosen" + (pieces and f". {pieces}")
 
     @property
     def n_chosen(self) -> int:
@@ -315,6 +336,7 @@ class NodeTool(Tool):
     def forget(self) -> None:
         """Know no paths."""
         self.held = [Held(source()) for source in SOURCES]
+        self._document = None
 
 
 def handles_of(index: NodeIndex, nodes: list[Node]) -> list[tuple[Point, Point]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.one_step import as_one_step
 from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
 from stippler.editor.messages import WARNING
@@ -127,9 +128,7 @@ def laid_on(document: Document, area: int) -> tuple[int, Pattern] | None:
 
 
 def _set(document: Document, k: int, pattern: Pattern, label: str) -> None:
-    document.begin(label)
-    document.set(_KIND, k, pattern)
-    document.commit()
+    as_one_step(document, label, lambda document: document.set(_KIND, k, pattern))
 
 
 @dataclass(slots=True)

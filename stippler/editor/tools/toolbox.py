@@ -78,6 +78,7 @@ class Toolbox:
         self.lines = ChosenLines()
         self.areas = AreaChoice()
         self.state: ToolState = RESTING
+        self._desk: Desk | None = None  # of the last event
         self.mods = NO_MODS
         self._n_strokes = seed
         self._from: Point | None = None  # where the pointer was when its heading was last looked at
@@ -89,16 +90,28 @@ class Toolbox:
     def choose(self, name: str) -> None:
         """Take a tool by its name, or the next brush of its type; an empty name puts it away.
 
-        With the old one goes what it holds open.
+        With the old one goes what it holds open; a stroke in progress ends as it is.
         """
         tool = self.made(name) if name else None
         if tool is not self.tool:
+            self._end_stroke()
             self.state = RESTING
             if self.tool is not None:
                 self.tool.put_away()
         elif isinstance(tool, BrushTool):
             self.shelf.use_next(tool.kind.name)
         self.tool = tool
+
+    def _end_stroke(self) -> None:
+        """End the stroke in progress, if there is one, as if its button had come up."""
+        desk = self._desk
+        if desk is None or not self.is_busy or not desk.document.in_stroke:
+            return
+        try:
+            self.state.take(FocusLost(), desk)
+        finally:
+            if desk.document.in_stroke:  # not one that can end early
+                desk.document.cancel()
 
     def made(self, name: str) -> Tool:
         """Return a tool by its name; it is made when it is first asked for."""
@@ -205,7 +218,7 @@ class Toolbox:
         self._note_mods(event)
         if self.tool is None:
             return False
-        desk = self.desk(document, page, px_per_mm)
+        desk = self._desk = self.desk(document, page, px_per_mm)
         if isinstance(event, Moved):
             self._head(page(event.x_px, event.y_px), px_per_mm)
         before = self.state
@@ -217,6 +230,8 @@ class Toolbox:
             self.state = before.take(event, desk)
         except BaseException:
             before.cancel(desk)
+            if document.in_stroke:  # that it has begun, or left open
+                document.cancel()
             self.state = RESTING
             raise
         match event:
@@ -245,7 +260,7 @@ class Toolbox:
         """Give up what is held, and the selection: another drawing is open now."""
         if document is not None and self.is_busy:
             self.state.cancel(self.desk(document, lambda x, y: (x, y), 1.0))
-        self.state = RESTING
+        self.state, self._desk = RESTING, None
         for tool in self._made.values():
             tool.forget()
         self.selection.forget()

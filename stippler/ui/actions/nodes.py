@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+from stippler.drawing.style import THROUGH, parameter_of
 from stippler.editor.commands import SHIFT, Command, Key
+from stippler.editor.tools.border_pieces import BORDER_COMMANDS, LABELS, chosen_pieces, set_policy
 from stippler.editor.tools.tool import Desk
 from stippler.ui.actions.parts import Parts
 
@@ -39,3 +41,25 @@ def node_commands(parts: Parts) -> Iterator[Command]:
          lambda desk: tool().choose_none(), ()),
     ):  # fmt: skip
         yield Command(f"nodes.{name}", label, doing(act), keys, can=has_some, short=short, tip=tip)
+
+    def has_pieces() -> bool:
+        return has_some() and bool(chosen_pieces(tool().held))
+
+    yield from _border_commands(doing, tool, has_pieces)
+
+
+def _border_commands(
+    doing: Callable[[Callable[[Desk], None]], Callable[[], None]],
+    tool: Callable[[], NodeTool],
+    can: Callable[[], bool],
+) -> Iterator[Command]:
+    """Yield what the pieces of borders between chosen nodes can be to dots."""
+    tips = {one.value: one.help for one in parameter_of("border").choices}
+    for name, policy in zip(BORDER_COMMANDS, LABELS, strict=True):
+        short = LABELS[policy]
+        tip = tips.get(policy, "What the areas beside the piece say, or their styles.")
+        if policy == THROUGH:
+            tip = "Dots on both sides of the piece see each other across it."
+        act = doing(lambda desk, one=policy: set_policy(desk, tool().held, one))  # type: ignore[misc]
+        label = f"Piece of border: {short.lower()}"
+        yield Command(f"nodes.{name}", label, act, (), can=can, short=short, tip=tip)

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from stippler.drawing.area import PAGE_AREA, Area
+from stippler.drawing.style import BLEED, THROUGH, WALL
 from stippler.editor.area_choice import AreaChoice
 from stippler.editor.view import View
 from stippler.ui.widgets import Rect
@@ -22,6 +23,8 @@ _LIGHT, _DARK = 0xC0FFFFFF, 0xC0302820
 _APART_PX = 0.75  # vertices nearer to the last one are left out
 _TINT, _STRONG = 0x30, 0xFF
 _MOST_TRIANGLES = 20_000
+_BROAD_PX = 2.2
+_DASHES_PX = {THROUGH: (7.0, 5.0), BLEED: (2.0, 4.0)}  # a stroke, and what is left out after it
 
 
 class AreaOverlay:
@@ -30,6 +33,7 @@ class AreaOverlay:
     def __init__(self) -> None:
         self._key: object = None
         self._borders: list[Line] = []
+        self._pieces: list[tuple[Line, float]] = []
         self._rings: list[tuple[Line, int]] = []
         self._tints: list[tuple[NDArray[np.float64], int]] = []
         self._triangles: dict[int, tuple[Area, NDArray[np.float64]]] = {}
@@ -52,6 +56,9 @@ class AreaOverlay:
         for points in self._borders:
             draw.add_polyline(points, _LIGHT, 2.6, imgui.ImDrawFlags_.none)
             draw.add_polyline(points, _DARK, 1.0, imgui.ImDrawFlags_.none)
+        for points, width in self._pieces:
+            draw.add_polyline(points, _LIGHT, width + 1.6, imgui.ImDrawFlags_.none)
+            draw.add_polyline(points, _DARK, width, imgui.ImDrawFlags_.none)
         for points, colour in self._rings:
             draw.add_polyline(points, _LIGHT, 4.2, imgui.ImDrawFlags_.closed)
             draw.add_polyline(points, colour, 2.4, imgui.ImDrawFlags_.closed)
@@ -73,8 +80,12 @@ class AreaOverlay:
             )
 
         low, high = np.array(canvas[:2]), np.array(canvas[2:])
-        lines = [placed(line) for line in _border_lines(document)]
-        self._borders = [thinned(p) for p in lines if _is_seen(p, low, high)]
+        lines, pieces = _border_lines(document)
+        self._borders = [thinned(p) for p in map(placed, lines) if _is_seen(p, low, high)]
+        self._pieces = [
+            one for policy, line in pieces
+            for one in _drawn(placed(line), policy, low, high)
+        ]  # fmt: skip
         self._rings, self._tints = [], []
         chosen = [k for k in choice.alive(document) if k != PAGE_AREA]
         for k in chosen:
@@ -101,16 +112,63 @@ class AreaOverlay:
         return np.asarray(corners)
 
 
-def _border_lines(document: Document) -> list[NDArray[np.float64]]:
-    """Return the borders, each once; of areas that have none yet, their outlines."""
-    from stippler.drawing.planar.planar_map import OUTSIDE
+def _border_lines(
+    document: Document,
+) -> tuple[list[NDArray[np.float64]], list[tuple[str, NDArray[np.float64]]]]:
+    """Return the borders, each once, and pieces that are to dots what they say themselves.
 
-    borders = document.drawing.borders
-    if borders:
-        arcs = [a for a in borders.values() if OUTSIDE not in (a.left, a.right)]  # type: ignore[attr-defined]
-        return [a.path.points_mm for a in arcs]  # type: ignore[attr-defined]
-    areas = [a for k, a in document.drawing.areas.items() if k != PAGE_AREA]
-    return [ring for area in areas for ring in _rings(area)]
+    Of areas that have no borders yet their outlines are returned.
+    """
+    from stippler.drawing.planar.planar_map import OUTSIDE, Arc
+    from stippler.drawing.planar.policies import pieces_of
+
+    lines, pieces = [], []
+    if not document.drawing.borders:
+        areas = [a for k, a in document.drawing.areas.items() if k != PAGE_AREA]
+        return [ring for area in areas for ring in _rings(area)], []
+    for arc in document.drawing.borders.values():
+        if not isinstance(arc, Arc) or not (arc.policies or OUTSIDE not in (arc.left, arc.right)):
+            continue
+        at = arc.path.points_mm
+        for first, last, policy in pieces_of(arc):
+            if policy:
+                pieces.append((policy, at[first : last + 1]))
+            elif OUTSIDE not in (arc.left, arc.right):
+                lines.append(at[first : last + 1])
+    return lines, pieces
+
+
+def _drawn(
+    points: NDArray[np.float64], policy: str, low: NDArray[np.float64], high: NDArray[np.float64]
+) -> list[tuple[Line, float]]:
+    """Return the strokes that a piece is drawn in: through dashed, bleed dotted, a wall broad."""
+    if not _is_seen(points, low, high):
+        return []
+    if policy == WALL:
+        return [(thinned(points), _BROAD_PX)]
+    if policy not in _DASHES_PX:
+        return [(thinned(points), 1.0)]
+    return [(line, 1.4) for line in dashes(points, *_DASHES_PX[policy], low, high)]
+
+
+def dashes(
+    points: NDArray[np.float64],
+    on: float,
+    off: float,
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+) -> list[Line]:
+    """Return the dashes of a line that may be seen in a box."""
+    way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    begin = np.arange(0.0, way[-1], on + off)
+    end = np.minimum(begin + on, way[-1])
+    a, b = (np.column_stack([np.interp(s, way, c) for c in points.T]) for s in (begin, end))
+    seen = ((np.maximum(a, b) >= low) & (np.minimum(a, b) <= high)).all(axis=1)
+    inner = np.searchsorted(way, [begin[seen], end[seen]], side="right")
+    return [
+        [tuple(p), *map(tuple, points[i:j].tolist()), tuple(q)]
+        for p, q, i, j in zip(a[seen].tolist(), b[seen].tolist(), *inner.tolist(), strict=True)
+    ]
 
 
 def _rings(area: Area) -> list[NDArray[np.float64]]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from imgui_bundle import imgui
 
 from stippler.editor.commands import Commands
+from stippler.editor.tools.border_pieces import BORDER_COMMANDS
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.ui.panels.brush_radius import draw_radius
 from stippler.ui.panels.strip import draw_tool
@@ -14,6 +15,7 @@ from stippler.ui.widgets import Widgets
 
 _TITLE = "##context"
 _COLUMNS = 4
+_BORDER = tuple(f"nodes.{name}" for name in BORDER_COMMANDS)
 _SELECTION = ("selection.copy", "selection.paste", "selection.delete", "selection.invert")
 
 
@@ -47,6 +49,8 @@ class ContextPalette:
         names = ["edit.undo", "edit.redo"]
         if len(self._toolbox.selection.ids) or self._toolbox.name == "select":
             names += _SELECTION
+        if self._toolbox.name == "nodes" and commands[_BORDER[0]].enabled:
+            names += _BORDER
         for k, name in enumerate(names):
             command = commands[name]
             if k % 2:
@@ -59,7 +63,7 @@ class ContextPalette:
                 enabled=command.enabled,
             ):
                 command.run()
-                chosen = chosen or name.startswith("selection.")
+                chosen = chosen or name.startswith(("selection.", "nodes."))
         if chosen:
             imgui.close_current_popup()
         imgui.end_popup()

@@ -1,6 +1,7 @@
 import errno
 import os
 import threading
+import time
 
 import pytest
 from hypothesis import given
@@ -113,8 +114,10 @@ def test_asking_does_not_wait_for_the_disk(tmp_path, monkeypatch):
     gate, real = threading.Event(), os.fsync
     journal = Journal(tmp_path / "one", MARK)
     monkeypatch.setattr(module.os, "fsync", lambda file: (gate.wait(10), real(file)))
+    began = time.monotonic()
     for _ in range(3):
         journal.append(lambda: b"x")
+    assert time.monotonic() - began < 2.0  # the disk takes 10
     assert journal.n_waiting == 3
     assert not journal.flush(0.05)
     gate.set()

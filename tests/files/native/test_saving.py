@@ -3,6 +3,7 @@
 import errno
 import importlib.util
 import os
+import stat
 import sys
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from stippler import atomic_write
 from stippler.errors import OutputError
+from stippler.files.native import recovery
 from stippler.files.native.container import read_container
 
 spec = importlib.util.spec_from_file_location(
@@ -79,6 +81,55 @@ def test_a_write_that_fails_midway_leaves_the_old_file(tmp_path, error):
         save_half()
     assert read_container(path) == kills.members(1)
     assert [f.name for f in tmp_path.iterdir()] == ["one.stipple"]
+
+
+class Recording:
+    """`os` that takes note of what is synced and renamed, and of how much was there by then."""
+
+    def __init__(self):
+        self.done = []
+
+    def __getattr__(self, name):
+        return getattr(os, name)
+
+    def fsync(self, descriptor):
+        status = os.fstat(descriptor)
+        what = "folder" if stat.S_ISDIR(status.st_mode) else status.st_size
+        self.done.append(("fsync", what))
+        os.fsync(descriptor)
+
+    def replace(self, one, other):
+        self.done.append(("replace", os.path.getsize(one)))
+        os.replace(one, other)
+
+
+@pytest.mark.parametrize("before", [False, True])
+def test_all_bytes_are_on_disk_before_the_name_is_taken_and_the_name_after_it(
+    tmp_path, monkeypatch, before
+):
+    path = tmp_path / "one.stipple"
+    if before:
+        kills.save(path, 1)
+    system = Recording()
+    monkeypatch.setattr(atomic_write, "os", system)
+    kills.save(path, 2)
+    monkeypatch.undo()
+    n = path.stat().st_size
+    assert system.done == [("fsync", n), ("replace", n), ("fsync", "folder")]
+
+
+def test_a_recovery_base_is_on_disk_before_the_page_that_names_it(tmp_path, monkeypatch):
+    system = Recording()
+    monkeypatch.setattr(recovery, "os", system)
+    keeper = recovery.Keeper(tmp_path)
+    keeper.begin(lambda: kills.members(1), "ear", None, "stippler")
+    assert keeper.wait()
+    monkeypatch.undo()
+    (folder,) = tmp_path.iterdir()
+    base = (folder / "base-1.stipple").stat().st_size
+    about = (folder / "about.json").stat().st_size
+    assert system.done == [("fsync", base), ("fsync", about), ("replace", about)]
+    keeper.forget()
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
