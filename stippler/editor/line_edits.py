@@ -111,7 +111,8 @@ def _near(document: Document, line: Line, reach_mm: float) -> Rows:
 
 
 def _line_up(document: Document, k: int, line: Line) -> int:
-    from stippler.stippling.lines import adhere, adhering, spread
+    from stippler.drawing.line_index import adhering
+    from stippler.stippling.lines import adhere, spread
 
     rows, mine = _near(document, line, line.reach_mm), rows_on(document, k)
     if not len(rows) and not len(mine):
@@ -126,7 +127,7 @@ def _line_up(document: Document, k: int, line: Line) -> int:
 
 
 def _give_way(document: Document, line: Line) -> int:
-    from stippler.stippling.lines import keeping_distance
+    from stippler.drawing.line_index import keeping_distance
 
     rows = _near(document, line, line.distance_mm)
     if not len(rows):
