@@ -93,11 +93,10 @@ class LineMeetings:
         step, at = (new - old) / n, old
         for _ in range(n):
             at, _held = self.zones.keep_distance(at + step)
-        clear = (at == new).all(axis=1)
-        if n > 1:  # who has met none goes there straight
-            at = np.where((np.abs(at - new).max(axis=1) < _TOLERANCE_MM)[:, None], new, at)
+        clear = np.abs(at - new).max(axis=1) < _TOLERANCE_MM  # has met none: goes there straight
         if clear.all():
             return new
+        at[clear] = new[clear]
         at = confine(at)
         stays = ~self.are_off(at)
         at[stays] = old[stays]
