@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stippler.brushes.local_sight import seen_around
 from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.document import Document
 from stippler.drawing.reference import Reference
@@ -143,12 +144,17 @@ def places_of(document: Document, rows: Rows, around: Box) -> Iterator[Place]:
     for k in np.flatnonzero(np.bincount(document.dots.area[rows])):
         own = near if len(document.drawing.areas) == 1 else near[near_area == k]
         outlines, is_box = _part_of_area(document, int(k), around)
+        asked = rows
+        if seen := seen_around(document, int(k), around):
+            own = near[np.isin(near_area, [int(k), *seen.areas])]
+            outlines, is_box = seen.joined_to(outlines), False
+            asked = np.where(document.dots.area[rows] == k, rows, -1)
         if not is_box:
             xy = document.dots.position_mm[own]
             inside = [shapely.intersects_xy(outline, xy[:, 0], xy[:, 1]) for outline in outlines]
             own = own[np.logical_or.reduce([np.zeros(len(own), np.bool_), *inside])]
-        at = np.searchsorted(own, rows)
-        found = own[np.minimum(at, len(own) - 1)] == rows if len(own) else at < 0
+        at = np.searchsorted(own, asked)
+        found = own[np.minimum(at, len(own) - 1)] == asked if len(own) else at < 0
         if found.any():
             yield Place(int(k), outlines, own, at[found], np.flatnonzero(found))
 

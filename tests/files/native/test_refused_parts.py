@@ -119,7 +119,7 @@ def test_structure_beyond_its_limit_is_refused():
         (lambda d: d["area"].update({"01": d["area"]["0"]}), "is no id"),
         (lambda d: d["area"].update({"-1": d["area"]["0"]}), "is no id"),
         (lambda d: d["area"].update({"9" * 10: d["area"]["0"]}), "is no id"),
-        (lambda d: d["area"].pop("0"), "area is not in the drawing|own area is missing"),
+        (lambda d: d["area"].clear(), "area is not in the drawing|own area is missing"),
         (lambda d: d["area"]["0"].update(style=77), "its style is missing"),
         (lambda d: d["area"]["0"].update(outline_mm="POLYGON ((0"), "outline of an area"),
         (lambda d: d["area"]["0"].update(outline_mm="POINT (1 2)"), "is no polygon"),
