@@ -11,6 +11,7 @@ from stippler.drawing.planar.moves import _doubled
 from stippler.drawing.planar.overlay import meets
 from stippler.drawing.planar.path import UNIT_MM, Path, path_of_cubics, pieces_of, with_handles
 from stippler.drawing.planar.planar_map import PAGE, Arc, PlanarMap
+from stippler.errors import GeometryError
 from tests.drawing.test_planar_map import box, node_at, size
 
 CURVE = np.array([(0.0, 0.0), (4.0, 9.0), (12.0, 9.0), (20.0, 3.0)])
@@ -211,3 +212,25 @@ def test_one_unit_of_the_grid_is_told_from_none(page):
     after = moves.move_nodes(area, {corner: (50.0 + UNIT_MM, 50.0)}).map
     assert size(after, 1) != size(area, 1)
     assert moves.move_nodes(area, {corner: (50.0, 50.0)}).map.arcs == area.arcs
+
+
+def test_a_border_that_would_cross_however_little_is_left_out_stays_and_is_told(page):
+    notch = [(10, 10), (50, 10), (50, 50), (35, 50), (30, 49.5), (25, 50), (10, 50)]
+    areas = edits.add(page, Path.polyline(notch, closed=True)).map
+    spike = Path.polyline([(20, 70), (40, 70), (30, 49.75)], closed=True)
+    areas = edits.add(areas, spike).map
+    (k,) = (k for k, arc in areas.arcs.items() if {arc.left, arc.right} == {PAGE, 1})
+    outcome = moves.simplify(areas, [k], 27.0)
+    assert outcome.notes == (f"border {k} stays as it is: simpler, it would cross another",)
+    assert outcome.map.arcs == areas.arcs
+    fine = moves.simplify(areas, [k], 10.0)  # halved five times it leaves the notch as it is
+    assert fine.notes == ()
+    assert size(fine.map, 1) == pytest.approx(1597.5)
+
+
+def test_an_island_is_not_reshaped_to_a_point(page):
+    areas = edits.add(page, box(10, 10, 50, 50)).map
+    (k,) = (k for k, arc in areas.arcs.items() if {arc.left, arc.right} == {PAGE, 1})
+    point = Path(areas.arcs[k].path.vertices[:1].copy())
+    with pytest.raises(GeometryError, match="would lose its length"):
+        moves.reshape(areas, {k: point})
