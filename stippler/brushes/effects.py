@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from stippler.brushes import move, scatter, selection, shape, size
 from stippler.brushes.brush import Brush
-from stippler.brushes.evening_out import FollowedSizes, evened_out
+from stippler.brushes.evening_out import evened_out
+from stippler.brushes.followed_sizes import FollowedSizes
 from stippler.brushes.jitter import jitter
 from stippler.brushes.local_cells import areas_of
 from stippler.brushes.stroke_path import Stamp

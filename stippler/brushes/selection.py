@@ -8,7 +8,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from stippler.brushes.evening_out import FollowedSizes, evened_out
+from stippler.brushes.evening_out import evened_out
+from stippler.brushes.followed_sizes import FollowedSizes
 from stippler.brushes.jitter import jitter
 from stippler.brushes.shape import reshape, resized
 from stippler.drawing.document import Document

@@ -9,7 +9,7 @@ import numpy as np
 
 from stippler.brushes.brush import Brush
 from stippler.brushes.effects import EFFECTS, Touch
-from stippler.brushes.evening_out import FollowedSizes
+from stippler.brushes.followed_sizes import FollowedSizes
 from stippler.brushes.scatter import Count
 from stippler.brushes.stroke_path import PointerSample, Spacer, Stamp, Ticker, smoothing_of
 from stippler.drawing.document import Document

@@ -90,11 +90,11 @@ def relax_drawing(
     yield Work("relax", 0, steps, notes=notes)
     for made in run(task):
         moved = drawing.dots.position_mm.copy()
-        moved[rows] = made.position_mm
+        moved[rows] = made.position_mm[: len(rows)]
         sizes = None
         if made.stage == DONE:
             sizes = drawing.dots.radius_mm.copy()
-            sizes[rows] = made.radius_mm
+            sizes[rows] = made.radius_mm[: len(rows)]
         held = None
         if made.line_of_dot is not None and task.lines is not None:
             held = holding(drawing.dots, rows, task.lines.ids, made)

@@ -19,6 +19,7 @@ from scipy.spatial import KDTree
 from stippler.drawing.reference import Reference
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
+from stippler.stippling.ground import brought_into
 from stippler.stippling.on_lines import OnLines
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
@@ -35,6 +36,7 @@ _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solv
 _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
 _WHOLE = 1e-6  # of the page
+_INSET_MM = 1e-6  # how far within the border a dot lies that was brought back
 _FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 _BY_CELLS = ("lloyd", "even")  # methods whose steps others may redirect
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
@@ -116,9 +118,20 @@ class StandingDraft:
         density = None if sheet is None else sheet.density_at
         return with_long_waves_gone(self.points, self.parts, of_dot, still, density)
 
+    def come_home(self) -> Floats:
+        """Return where the dots are, those that have left their own areas brought back."""
+        homes = self.standing.homes
+        points = self.points.copy() if homes else self.points
+        for rows, home in homes:
+            at = points[rows]
+            out = np.flatnonzero(~shapely.intersects_xy(home, at[:, 0], at[:, 1]))
+            if len(out):
+                points[rows[out]] = brought_into(home, at[out], _INSET_MM)
+        return points
+
     def progress(self, step: Step, watched: bool) -> Progress:
         """Return a snapshot after a step."""
-        points = _frozen(self.points) if watched else np.empty((0, 2))
+        points = _frozen(self.come_home()) if watched else np.empty((0, 2))
         sizes = self.radius_mm if watched else np.empty(0, np.float32)
         line, along = self._lines_of_dots() if watched else (None, None)
         return Progress(step.stage, step.done, step.total, points, _frozen(sizes),
@@ -126,7 +139,7 @@ class StandingDraft:
 
     def finished(self) -> Progress:
         """Return the last snapshot."""
-        points, sizes = _frozen(self.points), _frozen(self.radius_mm)
+        points, sizes = _frozen(self.come_home()), _frozen(self.radius_mm)
         line, along = self._lines_of_dots()
         return Progress(DONE, 1, 1, points, sizes, line_of_dot=line, along_mm=along)
 
@@ -150,10 +163,23 @@ def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
 
 def size_again(draft: StandingDraft, watched: bool) -> Iterator[Step]:
     """Solve sizes for the places where the dots are now; those a person has set stay."""
+    draft.points = draft.come_home()
     if draft.sheet is not None:
         solved = draft.sheet.solved_at(draft.points)
         draft.radius_mm = draft.radius_mm if solved is None else solved
     yield from ()
+
+
+def sizes_over_solved(task: Task) -> NDArray[np.float64]:
+    """Return how much larger standing dots are than their tone asks for, (n,).
+
+    1 for those whose sizes were solved; others were set by a person.
+    """
+    draft, reference = StandingDraft.of(task), task.reference
+    assert reference is not None, "without one there is no tone to compare with"
+    sheet = _Sheet(draft, reference)
+    share = draft.radius_mm / np.maximum(sheet.solved_mm, 1e-9)
+    return np.where(sheet.is_solved, 1.0, share)
 
 
 def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
@@ -270,7 +296,7 @@ class _Sheet:
         sizes = radius_mm.astype(np.float64)
         self.rule = DotRule(float(sizes.min()) / pixel, float(sizes.max()) / pixel)
         self.is_solved = np.zeros(len(sizes), np.bool_)
-        solved = self._solved(position_mm)
+        self.solved_mm = solved = self._solved(position_mm)
         self.is_solved = np.abs(sizes - solved) < _SOLVED * solved
         levels, typical = self._size_by_darkness(position_mm, sizes)
         per_dot = np.pi * typical**2

@@ -35,12 +35,15 @@ class Standing:
         Those that stay where they are; None is none.
     part_of_dot : (n,) int or None
         Which of the task's parts each lies in; None where there is only one.
+    homes : tuple of (rows, polygon)
+        Within which dots have to be that see beyond it.
     """
 
     position_mm: NDArray[np.float64]
     radius_mm: NDArray[np.float32]
     fixed: NDArray[np.bool_] | None = None
     part_of_dot: NDArray[np.integer] | None = None
+    homes: tuple[tuple[NDArray[np.intp], Polygon | MultiPolygon], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
