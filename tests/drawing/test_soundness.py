@@ -110,7 +110,8 @@ def spoilt(what):
 @pytest.mark.parametrize(
     ("what", "says"),
     [
-        ("crossing", r"border \d+ and border \d+ cross"), ("sides", "at once"), ("island", "lies in area 1"),
+        ("crossing", r"border \d+ and border \d+ cross"), ("sides", "at once"),
+        ("island", "lies in area 1"),
         ("missing", "at once"), ("twice", "lie on one another"), ("stranger", "area 77"),
         ("page", "of the page's"), ("rim", "lies in|bound"),
     ],
