@@ -87,7 +87,9 @@ def spoilt(what):
     island, seam = arc_between(areas, 1, 3), arc_between(areas, 1, 2)
     rim = arc_between(areas, 0, -1)
     if what == "crossing":
-        return moved(areas, island, 0, (50, 25)), (40, 25)
+        at = areas.arcs[island].path.vertices * UNIT_MM
+        corner = int(np.flatnonzero((at == (30, 20)).all(axis=1))[0])
+        return moved(areas, island, corner, (50, 25)), (40, 25)
     if what == "sides":
         arc = areas.arcs[seam]
         return with_arc(areas, seam, left=arc.right, right=arc.left), None
