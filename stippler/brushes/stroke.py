@@ -147,4 +147,4 @@ class Stroke:
         held, dx, dy = self._dragged
         if held >= 0:
             rows = self._document.rows(np.array([held]))
-            self._document.move(rows, np.array([(stamp.x + dx, stamp.y + dy)]))
+            self._document.move(rows, np.array([(stamp.x + dx, stamp.y + dy)]), hops=True)
