@@ -205,7 +205,8 @@ def _polygons(geometry: shapely.Geometry) -> list[shapely.Polygon]:
 
 def box_around(document: Document, position_mm: Floats, least: Box | None) -> Box:
     """Return a box around dots with a margin; one that holds `least` if that is given."""
-    (x0, y0), (x1, y1) = position_mm.min(axis=0), position_mm.max(axis=0)
+    x, y = position_mm.T
+    x0, y0, x1, y1 = float(x.min()), float(y.min()), float(x.max()), float(y.max())
     page = document.drawing.page
     whole = math.sqrt(page.width_mm * page.height_mm / len(document.dots))
     spacing = whole
@@ -213,7 +214,7 @@ def box_around(document: Document, position_mm: Floats, least: Box | None) -> Bo
         size, longest = (x1 - x0) * (y1 - y0), max(x1 - x0, y1 - y0)
         spacing = max(math.sqrt(size / len(position_mm)), longest / len(position_mm))
     margin = MARGIN_SPACINGS * max(spacing, 1e-6 * page.width_mm)
-    box = (float(x0 - margin), float(y0 - margin), float(x1 + margin), float(y1 + margin))
+    box = (x0 - margin, y0 - margin, x1 + margin, y1 + margin)
     if least is None:
         return box
     return (

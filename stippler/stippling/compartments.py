@@ -144,8 +144,10 @@ class Compartments:
         """Return the compartment of each point, of its shape if that is given; -1 outside."""
         found = np.full(len(points), -1, np.int32)
         if len(self) == 1 and self.kind[0] == RECTANGLE:
-            x0, y0, x1, y1 = self.box[0]
+            x0, y0, x1, y1 = self.box[0].tolist()
             x, y = points[:, 0], points[:, 1]
+            if len(x) and x0 <= x.min() and x.max() <= x1 and y0 <= y.min() and y.max() <= y1:
+                return np.zeros(len(points), np.int32)
             found[(x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)] = 0
         elif len(self) == 1:
             shapely.prepare(self.polygons[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,7 +48,7 @@ def _border_of(
     edge_of_slot = np.empty(0, np.int32)
     clear = np.full(n_cells, 1 << 20, np.int32)
     most_edges = 0
-    if len(parts.edges):
+    if (parts.kind != RECTANGLE).any():  # a rectangle's box is its border
         spread_edges(*args, start, edge_of_slot, True)
         np.cumsum(start, out=start)
         edge_of_slot = np.empty(int(start[-1]), np.int32)
@@ -60,6 +61,8 @@ def _border_of(
 def _frames(
     parts: Compartments, n_dots: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], int]:
+    if len(parts) == 1 and parts.kind[0] == RECTANGLE:
+        return _frame_of_rectangle(parts, int(n_dots[0]))
     width, height = (parts.box[:, 2:] - parts.box[:, :2]).T
     share = n_dots + 1.0
     most = 4.0 * share + 64.0  # grid cells allowed to a compartment, whatever its shape
@@ -74,6 +77,23 @@ def _frames(
     columns = nx, ny, first[:-1], kind, first_edge, parts.is_convex
     whole = np.column_stack(columns).astype(np.int32)
     return np.ascontiguousarray(real), np.ascontiguousarray(whole), int(first[-1])
+
+
+def _frame_of_rectangle(
+    parts: Compartments, n_dots: int
+) -> tuple[NDArray[np.float64], NDArray[np.int32], int]:
+    """Return what `_frames` does of the one rectangle that brushes ask for with each stamp."""
+    x0, y0, x1, y1 = parts.box[0].tolist()
+    width, height, share = x1 - x0, y1 - y0, n_dots + 1.0
+    most = 4.0 * share + 64.0
+    side = max(
+        math.sqrt(float(parts.area[0]) * DOTS_PER_CELL / share),
+        math.sqrt(width * height / most),
+        max(width, height) / most,
+    )
+    nx, ny = max(math.ceil(width / side), 1), max(math.ceil(height / side), 1)
+    real = np.array([[x0, y0, side, 1.0 / side, x0, y0, x1, y1]])
+    return real, np.array([[nx, ny, 0, 0, 0, 1]], np.int32), nx * ny
 
 
 def _boxes(parts: Compartments) -> NDArray[np.float64]:

@@ -17,6 +17,8 @@ from stippler.errors import ParameterError
 
 _COVERAGE = np.array([0.0, 0.8, 0.85, 0.9, 0.95, 0.98, 0.99, 1.0])
 _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
+INK_TABLE = np.stack([_COVERAGE, _INK])
+"""What `ink_for` interpolates, for kernels."""
 """Summed area of the discs on a unit of page, overlaps counted twice, that covers so much of it;
 for relaxed dots of locally equal size."""
 

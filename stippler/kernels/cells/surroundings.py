@@ -43,34 +43,6 @@ def ring_around(chosen: I4, around: I4, n_star: U1, is_known: U1, ring: I4) -> i
 
 
 @kernel
-def mean_among_alike(
-    rows: I4, around: I4, n_star: U1, place: I4, kind: F8, most: float, values: F8, mean: F8
-) -> None:
-    """Find the means of values over dots and those around them whose kind differs by less than so.
-
-    Parameters
-    ----------
-    rows : (k,) int32
-    place : int32 by row
-        Of a row in `rows`; below 0 for those that are not in it, which do not count.
-    kind, values, mean : (k,) float64
-        By place; the last is the result.
-    """
-    for w in range(len(rows)):
-        i = rows[w]
-        total, count = values[w], 1.0
-        for k in range(n_star[i]):
-            j = around[i, k]
-            if j < 0 or place[j] < 0:
-                continue
-            at = place[j]
-            if abs(kind[at] - kind[w]) < most:
-                total += values[at]
-                count += 1.0
-        mean[w] = total / count
-
-
-@kernel
 def move_by_rules(
     rows: I4, dots: Dots, grid: Grid, cells: F8, stars: Stars, spacing: Spacing, moves: Moves,
     todo: U1,
