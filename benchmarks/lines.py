@@ -19,6 +19,7 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.line import ADHERE, DISTANCE, Line
+from stippler.drawing.line_index import adhering, keeping_distance
 from stippler.drawing.pattern import Pattern
 from stippler.drawing.planar import edits
 from stippler.drawing.planar.path import Path
@@ -30,7 +31,7 @@ from stippler.editor.tools.selection import Selection
 from stippler.editor.tools.tool import Desk
 from stippler.editor.tools.warp_tool import WarpTool
 from stippler.stippling.initial_points import random_in
-from stippler.stippling.lines import adhere, adhering, keeping_distance, spread
+from stippler.stippling.lines import adhere, spread
 from stippler.stippling.on_lines import OnLines
 from stippler.stippling.part_of_area import part_for_dots
 from stippler.stippling.patterns import builtin
