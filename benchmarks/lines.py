@@ -17,12 +17,13 @@ from stippler.drawing.deformation import Cage, Deformation
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.line import ADHERE, DISTANCE, Line
+from stippler.drawing.line_index import adhering, keeping_distance
 from stippler.drawing.pattern import Pattern
 from stippler.drawing.planar.path import Path
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.initial_points import random_in
-from stippler.stippling.lines import adhere, adhering, keeping_distance, spread
+from stippler.stippling.lines import adhere, spread
 from stippler.stippling.on_lines import OnLines
 from stippler.stippling.part_of_area import part_for_dots
 from stippler.stippling.patterns import builtin

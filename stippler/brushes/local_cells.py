@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -17,6 +17,7 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.store import Rows
 from stippler.stippling.density import DensityField
 from stippler.stippling.relax_local import LocalRelaxation
+from stippler.stippling.style_tone import curves_of
 
 Floats = NDArray[np.float64]
 Box = tuple[float, float, float, float]
@@ -218,6 +219,17 @@ def box_around(document: Document, position_mm: Floats, least: Box | None) -> Bo
     return (
         min(box[0], least[0]), min(box[1], least[1]), max(box[2], least[2]), max(box[3], least[3])
     )  # fmt: skip
+
+
+def tone_in(document: Document, area: int, box: Box) -> DensityField | None:
+    """Cut the darkness that an area's dots are to show out of the picture, if there is one."""
+    reference = document.drawing.reference
+    if reference is None:
+        return None
+    seen = darkness_in(reference, box)
+    for curve in curves_of(document.drawing.style_of(area)):
+        seen = replace(seen, values=curve(seen.values))
+    return seen
 
 
 def density_in(reference: Reference, box: Box) -> DensityField:

@@ -142,7 +142,7 @@ class History:
             return None
         edit = self._edit(step)
         if edit is None:
-            self._lose(slice(0, self.n_done), "older")
+            self._lose(slice(0, self.n_done), -1, "older")
         self.n_done -= 1
         self._spill()
         return edit.inverse()
@@ -160,7 +160,7 @@ class History:
             return None
         edit = self._edit(step)
         if edit is None:
-            self._lose(slice(self.n_done, None), "later")
+            self._lose(slice(self.n_done, None), 0, "later")
         self.n_done += 1
         self._spill()
         return edit
@@ -196,17 +196,18 @@ class History:
             self._hold(step, edit)
         return edit
 
-    def _lose(self, which: slice, where: str) -> NoReturn:
-        """Let go of steps that cannot be done any more, and say so."""
+    def _lose(self, which: slice, nearest: int, where: str) -> NoReturn:
+        """Let go of steps that cannot be done any more, and say so; name the one nearest to now."""
         lost = self.steps[which]
         for step in lost:
             self._forget(step)
         del self.steps[which]
-        self.n_done -= len(lost) if which.start == 0 else 0
+        if where == "older":
+            self.n_done = 0
         more = f" and {len(lost) - 1:,} {where}" if len(lost) > 1 else ""
         raise HistoryError(
-            f"“{lost[-1 if which.start == 0 else 0].label}”{more} lay in a temporary folder that "
-            "is gone; the drawing is as it was",
+            f"“{lost[nearest].label}”{more} lay in a temporary folder that is gone; "
+            "the drawing is as it was",
             "history",
         )
 

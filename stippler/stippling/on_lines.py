@@ -11,8 +11,9 @@ import shapely
 from numpy.typing import NDArray
 
 from stippler.drawing.line import ADHERE
+from stippler.drawing.line_index import LineIndex
 from stippler.stippling.line_pieces import Measure, Pieces, evened
-from stippler.stippling.lines import LineIndex, Tone, crossings
+from stippler.stippling.lines import Tone, crossings
 from stippler.stippling.task import MetLines
 
 Points = NDArray[np.float64]

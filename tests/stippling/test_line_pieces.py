@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stippler.drawing.line import Line
+from stippler.drawing.line_index import LineIndex
 from stippler.drawing.planar.moves import smooth_path
 from stippler.drawing.planar.path import Path
 from stippler.stippling.line_pieces import Measure, Pieces, evened
-from stippler.stippling.lines import LineIndex
 
 seeds = st.integers(0, 9999)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
-from stippler.editor.line_edits import lines_of, meet, set_line
+from stippler.editor.line_edits import clear_zones, lines_of, meet, set_line
 from stippler.editor.messages import WARNING
 from stippler.editor.tools import bending
 from stippler.editor.tools.drag import Drag
@@ -207,7 +207,8 @@ class Warping(Drag):
             return RESTING
         self._keep_tone(document, self.now)
         for k in self.lines:
-            meet(document, k)
+            meet(document, k, desk.say)
+        clear_zones(document, document.rows(self.target.ids))
         document.commit()
         return RESTING
 
