@@ -10,6 +10,7 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from stippler.drawing.area import PAGE_AREA, Area
 from stippler.drawing.page import Page
 from stippler.drawing.planar.slivers import LEAST_WIDTH_MM
+from stippler.errors import GeometryError
 
 
 def with_page_area(areas: Mapping[int, Area], page: Page) -> dict[int, Area]:
@@ -17,11 +18,20 @@ def with_page_area(areas: Mapping[int, Area], page: Page) -> dict[int, Area]:
 
     Earlier files lack it where areas covered the whole page. As in drawings of today, it then has
     the style of the lowest of them.
+
+    Raises
+    ------
+    GeometryError
+        If the others' outlines are none.
     """
     if PAGE_AREA in areas or not areas:
         return dict(areas)
-    taken = shapely.union_all([area.outline_mm for area in areas.values()])
-    rest = box(0.0, 0.0, page.width_mm, page.height_mm).difference(taken)
+    whole = box(0.0, 0.0, page.width_mm, page.height_mm)
+    try:
+        shapes = shapely.make_valid([area.outline_mm for area in areas.values()])
+        rest = whole.difference(shapely.union_all(shapes))
+    except shapely.errors.GEOSException as error:
+        raise GeometryError(str(error)[:120], "outline of an area") from None
     if not isinstance(rest, Polygon | MultiPolygon) or _is_sliver(rest):
         rest = MultiPolygon()
     return {PAGE_AREA: Area("page", rest, areas[min(areas)].style), **areas}
