@@ -200,6 +200,7 @@ def test_a_line_parts_an_area_only_where_it_goes_across(page, end):
     found = edits.split(area, tail, 1).map
     assert len(found.areas) == 3
     assert sorted(size(found, k) for k in found.areas if k) == pytest.approx([800, 800])
+    assert all(arc.left != arc.right for arc in found.arcs.values())  # nothing of the line is left
     inside = Path.polyline([(30.0, 5.0), (30.0, 45.0)])
     with pytest.raises(Exception, match="does not part"):
         edits.split(area, inside, 1)
@@ -245,6 +246,10 @@ def test_short_handles_are_as_smooth_as_long_ones_and_turn_each_other(length):
     )  # fmt: skip
     at = path.nodes()[1]
     assert nodes.is_smooth(path, at)
+    bent = path_of_cubics([pieces_of(path)[0], np.array(
+        [node, node + 2 * to + (0.0, 0.1 * length), (33.0, 8.0), (40.0, 10.0)]
+    )])  # fmt: skip
+    assert not nodes.is_smooth(bent, at)
     turned = nodes.move_handle(path, at, "in", (20.0, 3.0 + length / 2))
     handles = nodes.handles_at(turned, turned.nodes()[1])
     assert handles["in"] == pytest.approx((20.0, 3.0 + length / 2), abs=1e-6)
