@@ -9,7 +9,15 @@ from stippler.drawing.planar.assemble import _runs, _same
 from stippler.drawing.planar.borders import Snap, trace
 from stippler.drawing.planar.moves import _doubled
 from stippler.drawing.planar.overlay import meets
-from stippler.drawing.planar.path import UNIT_MM, Path, path_of_cubics, pieces_of, with_handles
+from stippler.drawing.planar.path import (
+    UNIT_MM,
+    Curve,
+    Path,
+    on_cubic,
+    path_of_cubics,
+    pieces_of,
+    with_handles,
+)
 from stippler.drawing.planar.planar_map import PAGE, Arc, PlanarMap
 from stippler.errors import GeometryError
 from tests.drawing.test_planar_map import box, node_at, size
@@ -254,3 +262,16 @@ def test_short_handles_are_as_smooth_as_long_ones_and_turn_each_other(length):
     handles = nodes.handles_at(turned, turned.nodes()[1])
     assert handles["in"] == pytest.approx((20.0, 3.0 + length / 2), abs=1e-6)
     assert handles["out"] == pytest.approx((20.0, 3.0 - 2 * length), abs=1e-6)
+
+
+def test_a_curve_with_uneven_times_run_back_has_them_from_the_other_end():
+    at = (0.0, 0.1, 0.3, 0.9, 1.0)
+    points = on_cubic(CURVE, np.array(at))
+    path = Path(
+        np.rint(points / UNIT_MM).astype(np.int64),
+        (Curve(0, 4, (tuple(CURVE[1]), tuple(CURVE[2])), at),),
+    )
+    (back,) = path.reversed().curves
+    assert back.at == pytest.approx((0.0, 0.1, 0.7, 0.9, 1.0))
+    assert back.handles_mm == (tuple(CURVE[2]), tuple(CURVE[1]))
+    assert path.reversed().reversed().curves[0].at == pytest.approx(at)
