@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -13,19 +16,21 @@ from benchmarks.scorer import measure
 from stippler.drawing.deformation import Cage, Deformation
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
-from stippler.drawing.line import DISTANCE, Line
+from stippler.drawing.line import ADHERE, DISTANCE, Line
+from stippler.drawing.line_index import adhering, keeping_distance
 from stippler.drawing.pattern import Pattern
 from stippler.drawing.planar.path import Path
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.initial_points import random_in
-from stippler.stippling.lines import adhere, adhering, keeping_distance, spread
+from stippler.stippling.lines import adhere, spread
+from stippler.stippling.on_lines import OnLines
 from stippler.stippling.part_of_area import part_for_dots
 from stippler.stippling.patterns import builtin
 from stippler.stippling.pipeline import run
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.scale import Scaling, scaled_drawing
-from stippler.stippling.task import Task
+from stippler.stippling.task import MetLines, Task
 
 PAGE = (200.0, 150.0)
 
@@ -72,10 +77,30 @@ def _lines(repeats: int) -> list[Figure]:
     return [
         Figure("20k dots adhere to 500 curves", best_ms(lambda: adhere(lines, loose), repeats),
                "ms", 10),
+        *_on_lines(curves(500, np.random.default_rng(1)), loose),
         Figure("nearer to a line than asked, at worst", max(0.7 - float(nearest), 0.0), "mm", 1e-6),
         Figure("dots that find no place between lines", float((~held).mean()), "share"),
         Figure("spacing along a line, largest over mean", uneven, "", 0.01,
                note="straight, closed, curved"),
+    ]  # fmt: skip
+
+
+def _on_lines(lines: list[Line], dots: NDArray[np.float64]) -> list[Figure]:
+    """Measure what lines add to steps of relaxation, while dots join them and once full."""
+    met = [replace(line, meeting=ADHERE, reach_mm=1.0) for line in lines]
+    n = len(dots)
+    everyone = MetLines(tuple(met), tuple(range(len(met))), np.full(n, -1, np.int32), np.zeros(n),
+                        np.ones(n, np.bool_))  # fmt: skip
+    chooser, at, ms = OnLines(everyone, dots, [shapely.box(0, 0, 100, 100)]), dots, []
+    for _ in range(20):
+        started = time.process_time()
+        at = chooser(at, at.copy())
+        ms.append(1e3 * (time.process_time() - started))
+    note = f"{np.count_nonzero(chooser.on):,} on lines in the end; processor time"
+    return [
+        Figure("500 curves in a step of 20k dots, mean of 20", float(np.mean(ms)), "ms", 10,
+               note=note),
+        Figure("the same once curves are full", ms[-1], "ms", 10),
     ]  # fmt: skip
 
 

@@ -176,7 +176,8 @@ def process(
     ParameterError
         If there is no such area, or no picture, or a value is outside its range.
     GeometryError
-        If nothing of the page is an area's.
+        If none of the areas has room for dots; those that have none are left out else, and named
+        in `notes`.
 
     Notes
     -----
@@ -187,7 +188,7 @@ def process(
 
     wanted = [area] if isinstance(area, int | str) else list(area)
     made = drawing.snapshot()
-    ids = [_area_id(made, one) for one in wanted]
+    ids = [area_id(made, one) for one in wanted]
     if style is not None or keywords:
         _restyle(made, ids, style, keywords)
     document = Document(made)
@@ -204,7 +205,8 @@ def _style(style: Style | str | None) -> Style | None:
     return preset(style) if isinstance(style, str) else style
 
 
-def _area_id(drawing: _Drawing, area: int | str) -> int:
+def area_id(drawing: _Drawing, area: int | str) -> int:
+    """Return the id of an area that is told by its id or its name."""
     if isinstance(area, int):
         found = [area] if area in drawing.areas else []
     else:

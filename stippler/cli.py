@@ -25,6 +25,7 @@ from stippler.spooled import STDIN, at_hand
 from stippler.stopping import fail, stops
 
 if TYPE_CHECKING:
+    from stippler.drawing.drawing import Drawing
     from stippler.drawing.page import Page
 
 
@@ -193,8 +194,7 @@ def process(
 
     check_output(output, [_input(file)], "")
     drawing = open_drawing(file)
-    named = {one.name for one in drawing.areas.values()}
-    areas = [int(one) if one.isdecimal() and one not in named else one for one in area]
+    areas = _area_ids(drawing, area)
     styles = [asked.style] if asked.options else drawing.styles.values()
     if text := processing_warning(drawing, styles):
         _note(file, text)
@@ -206,6 +206,16 @@ def process(
         _note(file, note)
 
 
+def _area_ids(drawing: Drawing, told: list[str]) -> list[int]:
+    """Return the ids of areas that are told by name or id; a name counts before an id."""
+    from stippler.api import area_id
+
+    named = {one.name for one in drawing.areas.values()}
+    return [
+        area_id(drawing, int(one) if one.isdecimal() and one not in named else one) for one in told
+    ]
+
+
 @app.command()
 def scale(
     file: Annotated[Path, typer.Argument(help="A drawing (.stipple, .csv).")],
@@ -215,13 +225,25 @@ def scale(
     least_radius: Annotated[
         float, typer.Option(help="No dot is smaller than this radius, in mm.")
     ] = 0.0,
+    area: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Name or number of an area; several times. Else all."),
+    ] = None,
     seed: Seed = 1,
 ) -> None:
-    """Scale a drawing to another size or number of dots, keeping its tone."""
+    """Scale a drawing, or areas of it, to another size or number of dots, keeping its tone."""
     from stippler.api import open as open_drawing
-    from stippler.stippling.scale import Scaling, scaled_drawing
+    from stippler.stippling.scale import Scaling, patterns_aside, scaled_drawing
+    from stippler.stippling.scale_areas import scaled_areas
 
-    drawing = scaled_drawing(open_drawing(file), Scaling(by / 100.0, dots, least_radius, seed))
+    before = open_drawing(file)
+    for note in patterns_aside(before):
+        _note(file, note)
+    how = Scaling(by / 100.0, dots, least_radius, seed)
+    if area:
+        drawing = scaled_areas(before, _area_ids(before, area), how)
+    else:
+        drawing = scaled_drawing(before, how)
     drawing.inputs = (file,)
     drawing.save(output)
     stops.written = True

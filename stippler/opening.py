@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.page import MAX_PAGE_MM, Page
-from stippler.errors import StipplerError, TableError
+from stippler.errors import DrawingFileError, GeometryError, StipplerError, TableError
 from stippler.files.native.container import is_container
 from stippler.files.native.drawing_file import ENDING, open_drawing
 
@@ -26,12 +27,26 @@ def is_drawing(path: Path) -> bool:
 
 
 def open_file(path: Path) -> Drawing:
-    """Open a drawing; errors as `stippler.open`."""
+    """Open a drawing; errors as `stippler.open`. What was mended in it is warned of."""
     if path.suffix.lower() in TABLES:
         return _of_table(path)
+    drawing, mended = _opened(path)
+    if mended:
+        warnings.warn(f"{path}: {mended}", stacklevel=2)
+    return drawing
+
+
+def _opened(path: Path) -> tuple[Drawing, str]:
+    """Open a file of our own; return the drawing, and what was mended in it."""
+    from stippler.drawing.mending import with_sound_borders
     from stippler.files.read.picture import picture_of_bytes
 
-    return keeping(*open_drawing(path, picture_of_bytes))
+    drawing = keeping(*open_drawing(path, picture_of_bytes))
+    try:
+        return with_sound_borders(drawing)
+    except GeometryError as error:
+        do = "open a backup of the drawing"
+        raise DrawingFileError(f"has areas that make no map ({error})", path, do) from None
 
 
 def keeping(drawing: Drawing, members: Mapping[str, bytes]) -> Drawing:
@@ -49,16 +64,19 @@ def open_document(path: Path) -> tuple[Document, str]:
     from stippler.files.native import step_file
     from stippler.files.read.picture import picture_of_bytes
 
-    document = Document(open_file(path))
-    steps = document.drawing.foreign.members.get(step_file.MEMBER)
-    if steps is None:
-        return document, ""
-    try:
-        is_whole = step_file.give_steps(document, steps, picture_of_bytes, str(path))
-    except StipplerError as error:
-        return document, f"its history cannot be read: {error}"
-    changed = "its history is not taken over: the drawing was changed without it"
-    return document, "" if is_whole else changed
+    if path.suffix.lower() in TABLES:
+        return Document(_of_table(path)), ""
+    drawing, mended = _opened(path)
+    document = Document(drawing)
+    steps = drawing.foreign.members.get(step_file.MEMBER)
+    lack = ""
+    if steps is not None:
+        try:
+            if not step_file.give_steps(document, steps, picture_of_bytes, str(path)):
+                lack = "its history is not taken over: the drawing was changed without it"
+        except StipplerError as error:
+            lack = f"its history cannot be read: {error}"
+    return document, "; ".join(text for text in (mended, lack) if text)
 
 
 def _of_table(path: Path) -> Drawing:

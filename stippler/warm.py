@@ -160,8 +160,9 @@ def _bend_and_adhere() -> None:
 
     from stippler.drawing.deformation import Cage, Deformation
     from stippler.drawing.line import Line
+    from stippler.drawing.line_index import LineIndex
     from stippler.drawing.planar.path import Path as LinePath
-    from stippler.stippling.lines import LineIndex, adhere
+    from stippler.stippling.lines import adhere
 
     box = (0.0, 0.0, 9.0, 9.0)
     bent = Deformation(cage=Cage.over(box).moved({5: (3.5, 3.5)}))

@@ -7,6 +7,7 @@ import shapely
 
 from stippler.drawing.deformation import Cage, Deformation, before_fold
 from stippler.drawing.line import ADHERE, Line
+from stippler.drawing.line_index import adhering, keeping_distance
 from stippler.drawing.planar import edits, moves
 from stippler.drawing.planar.borders import snap
 from stippler.drawing.planar.path import Path
@@ -14,7 +15,7 @@ from stippler.drawing.planar.planar_map import OUTSIDE, PlanarMap
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.halftone_area import pulses_inside
-from stippler.stippling.lines import adhere, adhering, keeping_distance
+from stippler.stippling.lines import adhere
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import Relaxation

@@ -74,7 +74,8 @@ from stippler.drawing.planar import edits
 from stippler.drawing.planar.path import Path
 from stippler.drawing.planar.planar_map import PlanarMap
 from stippler.drawing.reference import Reference
-from stippler.stippling.lines import adhere, adhering, keeping_distance
+from stippler.drawing.line_index import adhering, keeping_distance
+from stippler.stippling.lines import adhere
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.radii import solve_radii

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from stippler.brushes import move, scatter, selection, shape, size
 from stippler.brushes.brush import Brush
-from stippler.brushes.evening_out import FollowedSizes, evened_out
+from stippler.brushes.evening_out import evened_out
+from stippler.brushes.followed_sizes import FollowedSizes
 from stippler.brushes.jitter import jitter
 from stippler.brushes.local_cells import areas_of
 from stippler.brushes.stroke_path import Stamp
@@ -87,8 +88,13 @@ def touch_of(touch: Touch, rows: Rows, weight: Floats) -> Touch:
 
 
 def add(touch: Touch) -> None:
-    """Add one dot."""
-    _insert(touch, np.array([touch.at_mm]))
+    """Add one dot; within the zone of a line that dots keep off, on its edge."""
+    points, lines = np.array([touch.at_mm]), touch.document.meetings
+    if lines is not None:
+        points, held = lines.keep_off(points)
+        points = points[held]
+    if len(points):
+        _insert(touch, points)
 
 
 def spray(touch: Touch) -> None:
@@ -103,14 +109,21 @@ def spray(touch: Touch) -> None:
     apart_mm = touch.number("apart_mm")
     if apart_mm > 0.0 and len(points):
         points = points[touch.document.apart(points, apart_mm)]
+    if (lines := touch.document.meetings) is not None:
+        points = points[lines.are_off(points)]
     if len(points):
-        _insert(touch, points)
+        _insert(touch, points, apart_mm)
 
 
-def _insert(touch: Touch, points: Floats) -> None:
-    dots = Dots.round(points, touch.number("dot_mm"))
+def _insert(touch: Touch, points: Floats, apart_mm: float = 0.0) -> None:
+    """Add dots; those within reach of a line that dots adhere to lie on it, unless it is full."""
+    document, radius = touch.document, touch.number("dot_mm")
+    dots = Dots.round(points, radius)
     dots.seed[:] = touch.rng.integers(0, 2**32, len(dots), np.uint32)
-    touch.document.insert(dots)
+    if (lines := document.meetings) is not None:
+        least = max(apart_mm, 2.0 * radius)
+        lines.line_up(dots, lambda places: document.apart(places, least))
+    document.insert(dots)
 
 
 def remove(touch: Touch) -> None:

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stippler.brushes.local_sight import seen_around
 from stippler.drawing.area import PAGE_AREA
 from stippler.drawing.document import Document
 from stippler.drawing.reference import Reference
 from stippler.drawing.store import Rows
 from stippler.stippling.density import DensityField
 from stippler.stippling.relax_local import LocalRelaxation
+from stippler.stippling.style_tone import curves_of
 
 Floats = NDArray[np.float64]
 Box = tuple[float, float, float, float]
@@ -143,12 +145,17 @@ def places_of(document: Document, rows: Rows, around: Box) -> Iterator[Place]:
     for k in np.flatnonzero(np.bincount(document.dots.area[rows])):
         own = near if len(document.drawing.areas) == 1 else near[near_area == k]
         outlines, is_box = _part_of_area(document, int(k), around)
+        asked = rows
+        if seen := seen_around(document, int(k), around):
+            own = near[np.isin(near_area, [int(k), *seen.areas])]
+            outlines, is_box = seen.joined_to(outlines), False
+            asked = np.where(document.dots.area[rows] == k, rows, -1)
         if not is_box:
             xy = document.dots.position_mm[own]
             inside = [shapely.intersects_xy(outline, xy[:, 0], xy[:, 1]) for outline in outlines]
             own = own[np.logical_or.reduce([np.zeros(len(own), np.bool_), *inside])]
-        at = np.searchsorted(own, rows)
-        found = own[np.minimum(at, len(own) - 1)] == rows if len(own) else at < 0
+        at = np.searchsorted(own, asked)
+        found = own[np.minimum(at, len(own) - 1)] == asked if len(own) else at < 0
         if found.any():
             yield Place(int(k), outlines, own, at[found], np.flatnonzero(found))
 
@@ -212,6 +219,17 @@ def box_around(document: Document, position_mm: Floats, least: Box | None) -> Bo
     return (
         min(box[0], least[0]), min(box[1], least[1]), max(box[2], least[2]), max(box[3], least[3])
     )  # fmt: skip
+
+
+def tone_in(document: Document, area: int, box: Box) -> DensityField | None:
+    """Cut the darkness that an area's dots are to show out of the picture, if there is one."""
+    reference = document.drawing.reference
+    if reference is None:
+        return None
+    seen = darkness_in(reference, box)
+    for curve in curves_of(document.drawing.style_of(area)):
+        seen = replace(seen, values=curve(seen.values))
+    return seen
 
 
 def density_in(reference: Reference, box: Box) -> DensityField:

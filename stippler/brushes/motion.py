@@ -84,7 +84,7 @@ class Held:
             return motion
         motion = self._allowed(motion)
         document, rows = self._document, self._document.rows(self._ids)
-        document.move(rows, motion.of(self._position))
+        document.move(rows, motion.of(self._position), hops=True)
         if motion.sizes and motion.scale != 1.0:
             radius = np.minimum(self._radius * motion.scale, MAX_RADIUS_MM)
             document.change("radius_mm", rows, radius.astype(np.float32))

@@ -8,7 +8,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from stippler.brushes.evening_out import FollowedSizes, evened_out
+from stippler.brushes.evening_out import evened_out
+from stippler.brushes.followed_sizes import FollowedSizes
 from stippler.brushes.jitter import jitter
 from stippler.brushes.shape import reshape, resized
 from stippler.drawing.document import Document
@@ -50,7 +51,7 @@ def alive(document: Document, ids: Ids) -> Rows:
 def move(document: Document, ids: Ids, step_mm: Point) -> None:
     """Move the free dots; each as far as its area lets it."""
     rows = alive(document, ids)
-    document.move(rows, document.dots.position_mm[rows] + step_mm)
+    document.move(rows, document.dots.position_mm[rows] + step_mm, hops=True)
 
 
 def delete(document: Document, ids: Ids) -> None:
@@ -62,9 +63,7 @@ def duplicate(document: Document, ids: Ids) -> Ids:
     """Add a free copy of each dot a little to the side; return the copies' ids."""
     dots = document.dots.take(alive(document, ids))
     dots.position_mm += _DUPLICATE_SHIFT_MM
-    dots.constraint[:] = FREE
-    rows = document.insert(dots)
-    return np.array(document.dots.id[rows])
+    return _inserted_free(document, dots)
 
 
 def paste(document: Document, copied: Dots, at_mm: Point | None, n: int) -> Ids:
@@ -76,7 +75,16 @@ def paste(document: Document, copied: Dots, at_mm: Point | None, n: int) -> Ids:
     low, high = dots.position_mm.min(axis=0), dots.position_mm.max(axis=0)
     shift = (n * _DUPLICATE_SHIFT_MM,) * 2 if at_mm is None else at_mm - (low + high) / 2
     dots.position_mm += shift
-    dots.constraint[:] = FREE
+    return _inserted_free(document, dots)
+
+
+def _inserted_free(document: Document, dots: Dots) -> Ids:
+    """Add copies that nothing holds, clear of lines that dots keep off; return their ids."""
+    dots.constraint[:], dots.curve[:], dots.parameter[:] = FREE, NO_CURVE, 0.0
+    if (lines := document.meetings) is not None:
+        places, held = lines.keep_off(dots.position_mm)
+        dots.position_mm[:] = places
+        dots = dots.take(held)
     rows = document.insert(dots)
     return np.array(document.dots.id[rows])
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from stippler.brushes.brush import Brush
 from stippler.brushes.effects import EFFECTS, Touch
-from stippler.brushes.evening_out import FollowedSizes
+from stippler.brushes.followed_sizes import FollowedSizes
 from stippler.brushes.scatter import Count
 from stippler.brushes.stroke_path import PointerSample, Spacer, Stamp, Ticker, smoothing_of
 from stippler.drawing.document import Document
@@ -147,4 +147,4 @@ class Stroke:
         held, dx, dy = self._dragged
         if held >= 0:
             rows = self._document.rows(np.array([held]))
-            self._document.move(rows, np.array([(stamp.x + dx, stamp.y + dy)]))
+            self._document.move(rows, np.array([(stamp.x + dx, stamp.y + dy)]), hops=True)

@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
+import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
+from stippler.drawing.planar.path import REACH_MM
 from stippler.drawing.style import AS_STYLE, BORDERS
 from stippler.errors import GeometryError, ParameterError
 
@@ -67,11 +69,14 @@ class Area:
     def from_json(cls, data: Mapping[str, Any]) -> Self:
         """Make an area of what `to_json` gave."""
         try:
-            outline = shapely.from_wkt(data["outline_mm"])
+            with np.errstate(invalid="ignore"):  # of NaN, which is refused below
+                outline = shapely.from_wkt(data["outline_mm"])
         except shapely.errors.GEOSException as error:
             raise GeometryError(str(error), "outline of an area") from None
         if not isinstance(outline, Polygon | MultiPolygon):
             raise GeometryError("is no polygon", "outline of an area")
+        if not (np.abs(shapely.get_coordinates(outline)) <= REACH_MM).all():
+            raise GeometryError("is far off the page", "outline of an area")
         return cls(**{**data, "outline_mm": outline})
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing import records
 from stippler.drawing.changes import Changes
+from stippler.drawing.derived import Derived
 from stippler.drawing.dots import Dots
 from stippler.drawing.draft import Draft
 from stippler.drawing.drawing import Drawing
@@ -20,9 +21,12 @@ from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE
 from stippler.drawing.partition import NOWHERE, Partition
 from stippler.drawing.recorder import Recorder
 from stippler.drawing.reference import Reference
-from stippler.drawing.run import Run
+from stippler.drawing.run import Holding, Run
 from stippler.drawing.store import DotStore, Rows, union
 from stippler.drawing.style import Style
+
+if TYPE_CHECKING:
+    from stippler.drawing.line_meetings import LineMeetings
 
 
 class Document:
@@ -54,13 +58,10 @@ class Document:
         self._stroke: Recorder | None = None
         self._run: Run | None = None
         self._draft: Draft | None = None
-        self._partition: Partition | None = None
+        self._derived = Derived(drawing)
         self._followers: list[Follower] = []
         self._replayed: Edit = Edit("")
         self._replayed_step: Step | None = None
-        self._locked: NDArray[np.int32] | None = None  # areas
-        self._areas_at = 0  # when they last changed
-        self._note_locks()
         drawing.dots = self._store.dots
         self._find_by_place()
 
@@ -77,9 +78,12 @@ class Document:
     @property
     def partition(self) -> Partition:
         """Which area owns which part of the page."""
-        if self._partition is None:
-            self._partition = Partition(self.drawing.outlines())
-        return self._partition
+        return self._derived.partition
+
+    @property
+    def meetings(self) -> LineMeetings | None:
+        """What lines ask of dots that are laid or moved; None without lines."""
+        return self._derived.meetings
 
     @property
     def n_bytes(self) -> int:
@@ -123,18 +127,24 @@ class Document:
             raise ValueError("a stroke has begun already")
         self._stroke = Recorder(self.drawing, self._store, label)
 
-    def move(self, rows: Rows, position_mm: NDArray[np.float64]) -> None:
-        """Move the free ones of some dots, as far as their areas let them."""
+    def move(self, rows: Rows, position_mm: NDArray[np.float64], *, hops: bool = False) -> None:
+        """Move the free ones of some dots, as far as their areas and lines let them.
+
+        With `hops`, as when a person takes them, they may end beyond a line that dots keep off.
+        """
         free = ~self.dots.is_fixed(rows) & self._yielding(rows)
         if not free.all():
             rows, position_mm = rows[free], position_mm[free]
         old = self.dots.position_mm[rows]
         new = self.partition.confine(old, position_mm, self.dots.area[rows])
+        if (lines := self.meetings) is not None:
+            area, confine = self.dots.area[rows], self.partition.confine
+            new = lines.stopped(old, new, lambda at: confine(old, at, area), hops=hops)
         self.change("position_mm", rows, new)
 
     def change(self, field: str, rows: Rows, values: NDArray[np.generic]) -> None:
         """Set one field of some rows; dots of locked areas only change hands."""
-        if self._locked is not None and field != "area":
+        if self._derived.locked is not None and field != "area":
             kept = self._yielding(rows)
             rows, values = rows[kept], values[kept]
         if not len(rows):
@@ -149,8 +159,8 @@ class Document:
         """
         stroke = self._in_stroke()
         area = self.partition.area_at(dots.position_mm)
-        if self._locked is not None:
-            area[np.isin(area, self._locked)] = NOWHERE
+        if self._derived.locked is not None:
+            area[np.isin(area, self._derived.locked)] = NOWHERE
         if (area == NOWHERE).any():
             dots = dots.take(area != NOWHERE)
         dots.area[:] = area[area != NOWHERE]
@@ -171,13 +181,7 @@ class Document:
 
     def _yielding(self, rows: Rows) -> NDArray[np.bool_]:
         """Return which rows are of areas that are not locked."""
-        if self._locked is None:
-            return np.ones(len(rows), np.bool_)
-        return ~np.isin(self.dots.area[rows], self._locked)
-
-    def _note_locks(self) -> None:
-        locked = [k for k, area in self.drawing.areas.items() if area.locked]
-        self._locked = np.array(locked, np.int32) if locked else None
+        return self._derived.are_unlocked(self.dots.area[rows])
 
     def set(self, kind: str, i: int, value: Any) -> None:
         """Set a value of another kind than dots, as `stippler.drawing.records` lists them.
@@ -295,16 +299,15 @@ class Document:
         self._tell(Entry(OPENED, Edit(label)))
         return dots
 
-    def merge(self, position_mm: NDArray[np.float64]) -> int:
-        """Move the dots of the run to a result's positions; return how many moved.
+    def merge(self, position_mm: NDArray[np.float64], holding: Holding | None = None) -> int:
+        """Move the dots of the run to a result's positions; return how many free ones moved.
 
-        Dots that are gone, held, or changed by a person since the run began stay as they are.
+        Dots that are gone, fixed, or changed by a person since the run began stay as they are.
         """
-        if self._run is None:
+        if (run := self._run) is None:
             return 0
-        if self._areas_at > self._run.base:
-            position_mm = self._run.kept_in_areas(self._store, self.partition, position_mm)
-        n, furthest_mm = self._run.move(self._store, position_mm, self._locked)
+        limits = self._derived.limits(run.base)
+        n, furthest_mm = run.merge(self._store, position_mm, limits, holding)
         self._index.drift(furthest_mm)
         self.changes.note_places()
         return n
@@ -313,7 +316,7 @@ class Document:
         """Give the dots of the run a result's radii, as `merge` does; return how many got one."""
         if self._run is None:
             return 0
-        n = self._run.size(self._store, radius_mm, self._locked)
+        n = self._run.size(self._store, radius_mm, self._derived.locked)
         self.changes.note_places()
         return n
 
@@ -468,11 +471,8 @@ class Document:
 
     def _note_value(self, kind: str, i: int) -> None:
         self.changes.note_record(kind, i)
-        if kind == records.AREA:
-            self._partition = None
-            self._areas_at = self.changes.now
-            self._note_locks()
-        elif kind == records.PAGE:
+        self._derived.note(kind, i, self.changes.now)
+        if kind == records.PAGE:
             self._find_by_place()
 
     def _use_dots(self) -> None:

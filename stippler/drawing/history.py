@@ -21,7 +21,7 @@ BUDGET_BYTES = 256 * 2**20
 _log = logging.getLogger("stippler")
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Step:
     """One line of the history.
 
@@ -142,7 +142,7 @@ class History:
             return None
         edit = self._edit(step)
         if edit is None:
-            self._lose(slice(0, self.n_done), "older")
+            self._lose(slice(0, self.n_done), -1, "older")
         self.n_done -= 1
         self._spill()
         return edit.inverse()
@@ -160,7 +160,7 @@ class History:
             return None
         edit = self._edit(step)
         if edit is None:
-            self._lose(slice(self.n_done, None), "later")
+            self._lose(slice(self.n_done, None), 0, "later")
         self.n_done += 1
         self._spill()
         return edit
@@ -196,17 +196,18 @@ class History:
             self._hold(step, edit)
         return edit
 
-    def _lose(self, which: slice, where: str) -> NoReturn:
-        """Let go of steps that cannot be done any more, and say so."""
+    def _lose(self, which: slice, nearest: int, where: str) -> NoReturn:
+        """Let go of steps that cannot be done any more, and say so; name the one nearest to now."""
         lost = self.steps[which]
         for step in lost:
             self._forget(step)
         del self.steps[which]
-        self.n_done -= len(lost) if which.start == 0 else 0
+        if where == "older":
+            self.n_done = 0
         more = f" and {len(lost) - 1:,} {where}" if len(lost) > 1 else ""
         raise HistoryError(
-            f"“{lost[-1 if which.start == 0 else 0].label}”{more} lay in a temporary folder that "
-            "is gone; the drawing is as it was",
+            f"“{lost[nearest].label}”{more} lay in a temporary folder that is gone; "
+            "the drawing is as it was",
             "history",
         )
 
@@ -215,7 +216,8 @@ class History:
         if self.n_bytes <= self._budget:
             return
         now = self.n_done - 0.5
-        for i in sorted(range(len(self.steps)), key=lambda i: abs(i - now), reverse=True):
+        far_first = sorted(range(len(self.steps)), key=lambda i: abs(i - now), reverse=True)
+        for i in far_first:  # pragma: no branch: the last ones are near, and end it
             step = self.steps[i]
             if self.n_bytes <= self._budget or not self._can_spill or abs(i - now) < 1.0:
                 return

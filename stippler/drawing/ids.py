@@ -52,15 +52,14 @@ class IdTable:
         self.put(ids, np.full(len(ids), GONE, np.int64))
 
     def _grow(self) -> None:
-        if self._n_pages == len(self._pages):
-            pages = np.empty((2 * len(self._pages), PAGE), np.int32)
-            pages[: self._n_pages] = self._pages
-            self._pages = pages
-        if 2 * self._n_pages >= len(self._keys):
-            keys = np.full(2 * len(self._keys), -1, np.int64)
-            page_of = np.zeros(len(keys), np.int32)
-            rehash(self._keys, self._page_of, keys, page_of)
-            self._keys, self._page_of = keys, page_of
+        """Take twice the room: pages are in use and half of the keys, which are twice as many."""
+        pages = np.empty((2 * len(self._pages), PAGE), np.int32)
+        pages[: self._n_pages] = self._pages
+        self._pages = pages
+        keys = np.full(2 * len(self._keys), -1, np.int64)
+        page_of = np.zeros(len(keys), np.int32)
+        rehash(self._keys, self._page_of, keys, page_of)
+        self._keys, self._page_of = keys, page_of
 
 
 def _own(values: NDArray[np.int64]) -> NDArray[np.int64]:

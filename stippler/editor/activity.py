@@ -242,7 +242,7 @@ class Relaxing(Job):
             desk.messages.say("; ".join(work.notes), WARNING)
         if desk.document is not None:
             if work.moved_mm is not None:
-                desk.document.merge(work.moved_mm)
+                desk.document.merge(work.moved_mm, work.held)
             if work.radius_mm is not None:
                 desk.document.merge_radii(work.radius_mm)
         return self

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 from stippler.editor.events import NO_MODS, KeyDown, Mods
@@ -97,6 +97,8 @@ class Command:
         As a button says it, where what it is for is clear; the label if not given.
     tip : str
         What it does, where the label does not tell.
+    hint : str
+        The label with its key.
     """
 
     name: str
@@ -109,20 +111,18 @@ class Command:
     repeats: bool = False
     short: str = ""
     tip: str = ""
+    hint: str = field(init=False)
 
     def __post_init__(self) -> None:
         if not self.short:
             object.__setattr__(self, "short", self.label)
+        shown = f"{self.label} ({self.keys[0]})" if self.keys else self.label
+        object.__setattr__(self, "hint", shown)
 
     @property
     def explained(self) -> str:
         """The label with its key, and what it does."""
         return f"{self.hint}: {self.tip}" if self.tip else f"{self.hint}."
-
-    @property
-    def hint(self) -> str:
-        """The label with its key."""
-        return f"{self.label} ({self.keys[0]})" if self.keys else self.label
 
     @property
     def shown_keys(self) -> str:

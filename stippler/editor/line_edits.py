@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.dots import FREE, NO_CURVE, ON_CURVE
+from stippler.editor.messages import INFO
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -85,21 +86,49 @@ def release(document: Document, rows: Rows) -> None:
     document.change("parameter", rows, np.zeros(n))
 
 
-def meet(document: Document, k: int) -> int:
+def meet(document: Document, k: int, say: Callable[[str, str], None] | None = None) -> int:
     """Let dots meet a line as it says: line up on it, or keep their distance; return how many did.
 
-    Dots that it held and is to be kept away from are free then.
+    Dots that it held and is to be kept away from are free then. Free ones that find no place to
+    keep off are taken away; `say` is told of these.
     """
     from stippler.drawing.line import ADHERE, DISTANCE
 
     line = lines_of(document)[k]
     if line.meeting == ADHERE:
         return _line_up(document, k, line)
-    if line.meeting != DISTANCE:
+    if line.meeting != DISTANCE or line.hidden:
         return 0
     if len(held := rows_on(document, k)):
         release(document, held)
-    return _give_way(document, line)
+    n_moved, n_gone = clear_zones(document, _near(document, line, line.distance_mm))
+    if n_gone and say is not None:
+        say(
+            f"{n_gone:,} dots found no place off {line.name or 'the line'} and were taken away",
+            INFO,
+        )
+    return n_moved
+
+
+def clear_zones(document: Document, rows: Rows) -> tuple[int, int]:
+    """Move free dots out of the zones of all lines; return how many moved, how many had to go.
+
+    One goes where there is no place that keeps all distances within its area.
+    """
+    lines = document.meetings
+    rows = rows[rows >= 0]
+    rows = rows[document.dots.constraint[rows] == FREE]
+    if lines is None or not len(rows):
+        return 0, 0
+    before = document.dots.position_mm[rows].copy()
+    inside = ~lines.are_off(before)
+    rows, before = rows[inside], before[inside]
+    document.move(rows, before, hops=True)
+    after = document.dots.position_mm[rows]
+    n_moved, lost = int((after != before).any(axis=1).sum()), rows[~lines.are_off(after)]
+    n_before = len(document.dots)
+    document.remove(lost)
+    return n_moved, n_before - len(document.dots)
 
 
 def _near(document: Document, line: Line, reach_mm: float) -> Rows:
@@ -111,7 +140,8 @@ def _near(document: Document, line: Line, reach_mm: float) -> Rows:
 
 
 def _line_up(document: Document, k: int, line: Line) -> int:
-    from stippler.stippling.lines import adhere, adhering, spread
+    from stippler.drawing.line_index import adhering
+    from stippler.stippling.lines import adhere, spread
 
     rows, mine = _near(document, line, line.reach_mm), rows_on(document, k)
     if not len(rows) and not len(mine):
@@ -123,19 +153,6 @@ def _line_up(document: Document, k: int, line: Line) -> int:
     along = np.concatenate([document.dots.parameter[mine], found.along[on]])
     hold(document, np.concatenate([mine, rows[on]]), k, spread(line, along, tone_of(document)))
     return int(on.sum() + far.sum())
-
-
-def _give_way(document: Document, line: Line) -> int:
-    from stippler.stippling.lines import keeping_distance
-
-    rows = _near(document, line, line.distance_mm)
-    if not len(rows):
-        return 0
-    before = document.dots.position_mm[rows].copy()
-    moved, _ = keeping_distance([line]).keep_distance(before)
-    far = (moved != before).any(axis=1)
-    document.move(rows[far], moved[far])
-    return int(far.sum())
 
 
 def tone_of(document: Document) -> Callable[[Points], Points] | None:

@@ -123,7 +123,7 @@ class Lines:
             for k, line in changed.items():
                 set_line(document, k, line)
                 if meets:
-                    meet(document, k)
+                    meet(document, k, self._session.messages.say)
 
         what = "lines" if len(changed) > 1 else "line"
         self._painting.act(f"Change {what}", act)

@@ -38,10 +38,12 @@ def process(session: Session, areas: Sequence[int]) -> bool:
 
     session.supersede()
     try:
-        tasks = tasks_of(document, chosen)
+        tasks, left_out = tasks_of(document, chosen)
     except StipplerError as error:
         session.messages.say(str(error), WARNING)
         return False
+    for note in left_out:
+        session.messages.say(note, WARNING)
     styles = [document.drawing.style_of(area) for area in chosen]
     if text := processing_warning(document.drawing, styles):
         session.messages.say(text, WARNING)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,9 +19,18 @@ if TYPE_CHECKING:
 _STAGE = "scale"
 
 
-def scale(session: Session, percent: float, n_dots: int | None, least_radius_mm: float) -> bool:
-    """Begin to scale the drawing; return whether it began. What cannot be done is said."""
-    from stippler.stippling.scale import Scaling, scaled_drawing
+def scale(
+    session: Session,
+    percent: float,
+    n_dots: int | None,
+    least_radius_mm: float,
+    areas: Collection[int] = (),
+) -> bool:
+    """Begin to scale the drawing, or areas of it; return whether it began.
+
+    What cannot be done is said.
+    """
+    from stippler.stippling.scale import Scaling, patterns_aside, scaled_drawing
 
     document = session.document
     if document is None or not session.paintable or document.in_stroke:
@@ -34,14 +43,19 @@ def scale(session: Session, percent: float, n_dots: int | None, least_radius_mm:
         return False
     session.supersede()
     frozen = document.drawing.snapshot()
+    for note in patterns_aside(frozen):
+        session.messages.say(note, WARNING)
 
     def run() -> Iterator[Work]:
         from stippler.drawing.document import Document
+        from stippler.stippling.scale_areas import scaled_areas
 
         yield Work(_STAGE)
-        yield Work(_STAGE, 1, 1, document=Document(scaled_drawing(frozen, values)))
+        made = scaled_areas(frozen, areas, values) if areas else scaled_drawing(frozen, values)
+        yield Work(_STAGE, 1, 1, document=Document(made))
 
-    session.launch(run, lambda k: Scaled(k, _STAGE))
+    names = " and ".join(frozen.areas[k].name for k in areas)
+    session.launch(run, lambda k: Scaled(k, _STAGE, label=f"Scale {names or 'drawing'}"))
     return True
 
 
@@ -49,12 +63,14 @@ def scale(session: Session, percent: float, n_dots: int | None, least_radius_mm:
 class Scaled(Job):
     """The drawing is being scaled; it stays as it was until that is done."""
 
+    label: str = "Scale drawing"
+
     def take(self, desk: Desk, work: Work) -> Activity:
         """Put the scaled drawing in the place of the one that is open, as one step."""
         self._note(work)
         if work.document is not None and desk.document is not None:
             before = len(desk.document.dots)
-            become(desk.document, work.document.drawing, "Scale drawing")
+            become(desk.document, work.document.drawing, self.label)
             page, n = desk.document.drawing.page, len(desk.document.dots)
             told = f"{page.width_mm:.4g} × {page.height_mm:.4g} mm, {before:,} → {n:,} dots"
             desk.messages.say(told, INFO)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from stippler.drawing.adjustment import NEUTRAL
 from stippler.drawing.area import PAGE_AREA
-from stippler.drawing.one_step import as_one_step
 from stippler.editor import processing
 from stippler.editor.activity import (
     Filling,
@@ -181,7 +180,6 @@ class Session(SessionState):
             self.messages.say("there are no dots to relax", WARNING)
             return
         self.supersede()
-        self._spread_on_lines(document)
         label = "Relax all" if areas is None else "Relax areas"
         frozen = replace(document.drawing, dots=document.begin_run(label))
         style = replace(self.style, weighted=weighted)
@@ -191,14 +189,6 @@ class Session(SessionState):
             lambda: stippling.relax_drawing(frozen, style, iterations, areas),
             lambda k: Relaxing(k, "relax", source, total=iterations),
         )
-
-    def _spread_on_lines(self, document: Document) -> None:
-        """Spread dots that lines hold along them, as a step of its own if any moves."""
-        from stippler.drawing.dots import ON_CURVE
-        from stippler.editor.line_edits import spread_held
-
-        if (document.dots.constraint == ON_CURVE).any():
-            as_one_step(document, "Spread dots on lines", spread_held)
 
     def take_over(self) -> bool:
         """Let a person edit the dots of a draft that is being relaxed: it is adopted as it is.

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from stippler.errors import GeometryError
 from stippler.jobs.work import Work
 
 if TYPE_CHECKING:
@@ -15,29 +16,39 @@ if TYPE_CHECKING:
     from stippler.stippling.tasks import AreaTask
 
 
-def tasks_of(document: Document, areas: Sequence[int]) -> list[AreaTask]:
-    """Return what stippling some areas of a document takes.
+def tasks_of(document: Document, areas: Sequence[int]) -> tuple[list[AreaTask], tuple[str, ...]]:
+    """Return what stippling some areas of a document takes, and what there is to say of others.
 
-    Areas that see through their borders have one task together.
+    Areas that see through their borders have one task together. Those that have no room for dots,
+    for others or a pattern leave them none, are left out, so that the rest can go on.
 
     Raises
     ------
-    ParameterError, GeometryError
-        If an area cannot be stippled.
+    ParameterError
+        If there is no such area, or no picture.
+    GeometryError
+        If none is left.
     """
     from stippler.stippling.border_policies import BorderPolicies, part_of_all
+    from stippler.stippling.part_of_area import left_out, none_left
     from stippler.stippling.tasks import box_around, stippling
 
     drawing, partition = document.drawing, document.partition
     policies = BorderPolicies(drawing, partition)
-    tasks = []
+    tasks: list[AreaTask] = []
+    missed: dict[tuple[int, ...], GeometryError] = {}
     for group in policies.joined(areas):
         near = None
         if all(k in drawing.areas for k in group):
             part = part_of_all(partition, group)
             near = None if part.is_empty else document.in_box(box_around(part))
-        tasks.append(stippling(drawing, group, partition, near, policies))
-    return tasks
+        try:
+            tasks.append(stippling(drawing, group, partition, near, policies))
+        except GeometryError as error:
+            missed[group] = error
+    if missed and not tasks:
+        raise none_left(missed.values())
+    return tasks, tuple(left_out(drawing, group, error) for group, error in missed.items())
 
 
 def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Iterator[Work]:
@@ -78,12 +89,12 @@ def process_now(document: Document, areas: Sequence[int]) -> tuple[str, ...]:
     Raises
     ------
     ParameterError, GeometryError
-        If an area cannot be stippled; then nothing has changed.
+        As `tasks_of`; then nothing has changed.
     """
     from stippler.stippling.progress import notes_on
 
-    notes: list[str] = []
-    tasks = tasks_of(document, areas)
+    tasks, left = tasks_of(document, areas)
+    notes = list(left)
     results = list(process_areas(tasks, snapshots=False))
     for area, made in results[-1].finished if results else ():
         begin(document, area)

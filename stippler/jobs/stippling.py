@@ -12,12 +12,17 @@ from stippler.jobs.reading import read_source
 from stippler.jobs.work import PREPARE, READ, Source, Work
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
+    from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
+    from stippler.drawing.run import Holding
     from stippler.drawing.style import Style
     from stippler.stippling.fill import Filling
+    from stippler.stippling.progress import Progress
     from stippler.stippling.task import Task
 
 
@@ -85,12 +90,31 @@ def relax_drawing(
     yield Work("relax", 0, steps, notes=notes)
     for made in run(task):
         moved = drawing.dots.position_mm.copy()
-        moved[rows] = made.position_mm
+        moved[rows] = made.position_mm[: len(rows)]
         sizes = None
         if made.stage == DONE:
             sizes = drawing.dots.radius_mm.copy()
-            sizes[rows] = made.radius_mm
-        yield Work(made.stage, made.done, made.total, moved_mm=moved, radius_mm=sizes)
+            sizes[rows] = made.radius_mm[: len(rows)]
+        held = None
+        if made.line_of_dot is not None and task.lines is not None:
+            held = holding(drawing.dots, rows, task.lines.ids, made)
+        yield Work(made.stage, made.done, made.total, moved_mm=moved, radius_mm=sizes, held=held)
+
+
+def holding(dots: Dots, rows: NDArray[np.intp], ids: tuple[int, ...], made: Progress) -> Holding:
+    """Return which lines hold dots, and where, once some of them have been moved."""
+    import numpy as np
+
+    from stippler.drawing.run import Holding
+
+    line, along = made.line_of_dot, made.along_mm
+    assert line is not None, "the lines of these dots are known"
+    assert along is not None, "and so is where on them they lie"
+    curve, parameter = dots.curve.copy(), dots.parameter.copy()
+    on = line >= 0
+    curve[rows[on]] = np.array(ids, np.int32)[line[on]]
+    parameter[rows[on]] = along[on]
+    return Holding(curve, parameter)
 
 
 def fill(outlines: Sequence[Polygon | MultiPolygon], values: Filling) -> Iterator[Work]:

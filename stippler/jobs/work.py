@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from stippler.drawing.document import Document
     from stippler.drawing.reference import Reference
+    from stippler.drawing.run import Holding
     from stippler.stippling.progress import Progress
 
 PREPARE, READ = "prepare", "read"
@@ -58,6 +59,8 @@ class Work:
         Where a relaxation of the drawing's own dots has brought them.
     radius_mm : (n,) float32 or None
         What their radii are to be.
+    held : Holding or None
+        Which lines hold them then.
     points_mm : (n, 2) float64 or None
         Where an area is to have more dots.
     document : Document or None
@@ -79,6 +82,7 @@ class Work:
     progress: Progress | None = None
     moved_mm: NDArray[np.float64] | None = None
     radius_mm: NDArray[np.float32] | None = None
+    held: Holding | None = None
     points_mm: NDArray[np.float64] | None = None
     document: Document | None = None
     notes: tuple[str, ...] = ()

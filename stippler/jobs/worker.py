@@ -122,19 +122,30 @@ class Worker(Generic[Result]):
 
     def _loop(self) -> None:
         stand_back()
-        while True:
-            with self._changed:
-                self._running_id = None
-                self._changed.notify_all()
-                while self._pending is None and not self._closed:
-                    self._changed.wait()
-                if self._pending is None:
-                    return
-                request, self._pending = self._pending, None
-                self._running_id, self._stop = request.id, False
-            self._run(request)
+        while self._has_next():
+            self._run()
 
-    def _run(self, request: Request[Result]) -> None:
+    def _has_next(self) -> bool:
+        """Wait for a request; return whether there is one, and not the end."""
+        with self._changed:
+            self._running_id = None
+            self._changed.notify_all()
+            while self._pending is None and not self._closed:
+                self._changed.wait()
+            return self._pending is not None
+
+    def _next(self) -> Request[Result] | None:
+        """Take the request that waits, unless it has been taken back since it was seen."""
+        with self._changed:
+            request, self._pending = self._pending, None
+            if request is not None:
+                self._running_id, self._stop = request.id, False
+            return request
+
+    def _run(self) -> None:
+        request = self._next()  # known here alone, so that its inputs go when it has ended
+        if request is None:
+            return
         n, result = 0, None
         ended, failure = "finished", None
         try:

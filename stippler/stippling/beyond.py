@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiLineString, Polygon
 
 from stippler.drawing.partition import Outline
-from stippler.stippling.border_policies import polygons_in, with_slits
+from stippler.stippling.border_policies import BorderPolicies, polygons_in, with_slits
 from stippler.stippling.borders import strips_beyond
 
 Floats = NDArray[np.float64]
@@ -114,6 +114,15 @@ class Beyond:
 
 
 NOTHING = Beyond([], np.empty(0, np.intp), [], (), [])
+
+
+def seen_of(policies: BorderPolicies, areas: Sequence[int]) -> tuple[Seen, ...]:
+    """Return what some areas see of others."""
+    return tuple(
+        Seen(border.through, border.walls, policies.partition.part_of(k))
+        for k, borders in policies.seen_from(areas).items()
+        for border in borders
+    )
 
 
 def _strips_of(one: Seen, outline: Outline, width_mm: float) -> list[Polygon]:

@@ -6,16 +6,18 @@ say so and share a style. All else between two areas is a wall to each, or bleed
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiLineString, MultiPolygon
 
+from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.planar.planar_map import Arc
@@ -122,26 +124,41 @@ class BorderPolicies:
             if i < j and (shared := self.between(seeing[i], seeing[j])) is not None:
                 yield seeing[i], seeing[j], shared
 
+    @cached_property
+    def _all_pairs(self) -> list[tuple[int, int, Shared]]:
+        return list(self.pairs(self.seeing))
+
     def seen_from(self, areas: Sequence[int]) -> dict[int, tuple[Shared, ...]]:
         """Return which areas are seen from some, through which of their borders."""
         mine = set(areas)
         around: dict[int, tuple[Shared, ...]] = {}
         if mine & set(self.seeing):
-            for a, b, shared in self.pairs(self.seeing):
+            for a, b, shared in self._all_pairs:
                 if (a in mine) != (b in mine):
                     other = b if a in mine else a
                     around[other] = (*around.get(other, ()), shared)
         return around
+
+    @property
+    def may_see_through(self) -> bool:
+        """Whether there are areas of which one may see another."""
+        return len(self.seeing) > 1
 
     def joined(self, areas: Sequence[int]) -> list[tuple[int, ...]]:
         """Return which of some areas are drawn as one, each group where its first area is.
 
         Those of one style that see each other through some of the border between them.
         """
+        style = {k: self.drawing.areas[k].style for k in areas if k in self.drawing.areas}
+        return self.linked(areas, lambda a, b: style[a] == style[b])
+
+    def linked(
+        self, areas: Sequence[int], count: Callable[[int, int], bool] = lambda a, b: True
+    ) -> list[tuple[int, ...]]:
+        """Return which of some areas see each other, as far as that is to count."""
         group = {k: k for k in areas}
         for a, b, _ in self.pairs(areas):
-            alike = self.drawing.areas[a].style == self.drawing.areas[b].style
-            if alike and group[a] != group[b]:
+            if count(a, b) and group[a] != group[b]:
                 old, new = group[b], group[a]
                 group = {j: new if g == old else g for j, g in group.items()}
         found: dict[int, list[int]] = {}
@@ -156,6 +173,24 @@ class BorderPolicies:
             return part
         walls = [shared.walls for _, _, shared in self.pairs(areas)]
         return with_slits(part, walls)
+
+
+_known: WeakKeyDictionary[Document, tuple[object, BorderPolicies]] = WeakKeyDictionary()
+
+
+def policies_of(document: Document) -> BorderPolicies:
+    """Return what a document's borders are to dots; the same until areas, styles or borders change.
+
+    Brushes ask with each stamp: what is the same object is found equal at once.
+    """
+    drawing = document.drawing
+    tables = drawing.areas, drawing.borders, drawing.styles, drawing.patterns
+    known = _known.get(document)
+    if known is None or known[0] != tables:
+        made = BorderPolicies(drawing, document.partition)
+        known = tuple([dict(table) for table in tables]), made
+        _known[document] = known
+    return known[1]
 
 
 def pieces_of(drawing: Drawing) -> Pieces:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,18 @@ Rows = NDArray[np.int32]
 Question = Callable[[], bool] | None
 Redirect = Callable[[Floats, Floats], Floats]
 """Given where dots are and where a step would take them, (n, 2) mm, returns where they shall go."""
+
+
+@runtime_checkable
+class Crossing(Protocol):
+    """A `Redirect` that may send some dots into other compartments, `may_cross` by dot."""
+
+    may_cross: NDArray[np.bool_]
+
+    def __call__(self, before: Floats, wanted: Floats) -> Floats:
+        """Return where dots shall go."""
+        ...
+
 
 CORNER_CAP = MANY
 GRAIN = 4096
@@ -89,16 +101,22 @@ class Cells:
         self._free_of_dot = np.zeros(n)
         self._has_stars = False
         self.n_failed = n  # stars of the step before that did not hold
-        self.rules, self._is_measured = LLOYD, True
+        self.rules, self._is_measured, self._is_met = LLOYD, True, np.zeros(self.n, np.bool_)
 
-    def space_by(self, wanted: Wanted | Sequence[Wanted], radius_mm: Floats | None = None) -> None:
+    def space_by(
+        self,
+        wanted: Wanted | Sequence[Wanted],
+        radius_mm: Floats | None = None,
+        is_met: NDArray[np.bool_] | None = None,
+    ) -> None:
         """Move dots by the rules of even spacing from now on; what is wanted goes by the field.
 
         One thing is wanted of all, or one of each shape. With radii given, by dot, density follows
-        from these and the tone.
+        from these and the tone. The mass of dots that are met counts as what they want.
         """
         n = self.n
         self._sort(self._has_stars)
+        self._is_met = np.zeros(n, np.bool_) if is_met is None else is_met[self.order]
         each = [wanted] if isinstance(wanted, Wanted) else list(wanted)
         tables = [one.table() for one in each]
         rows = np.array([len(table) for table in tables])
@@ -117,7 +135,14 @@ class Cells:
         if self._is_measured or self.rules.rule[LEAST] >= 1.0:
             return
         self._relax(np.arange(self.n, dtype=np.int32), False, self._new_moves())
-        self._fit_wants_to_number()
+        self._hand_over_wants()
+
+    def _hand_over_wants(self) -> None:
+        """Let the next step go by what this one has found."""
+        if not self._is_measured:
+            self._fit_wants_to_number()
+        if len(self.rules.found):
+            self.rules.found[self._is_met, MASS] = 1.0
         self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
 
     def _fit_wants_to_number(self) -> None:
@@ -163,9 +188,7 @@ class Cells:
         if redirect is not None:
             self._redirect(new, redirect)
         self.xs, self.ys = new.x, new.y
-        if not self._is_measured:
-            self._fit_wants_to_number()
-        self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
+        self._hand_over_wants()
         if self.n:
             self._slack += float(new.gone.max())
             self._keep = float(new.gone.mean()) < KEEP_BELOW * self.spacing
@@ -186,10 +209,25 @@ class Cells:
         owner = self.compartment_of_dot[rows]
         near = np.flatnonzero(~(gone < free) | (self.parts.kind[owner] == RECTANGLE))
         out = near[~self.parts.contain(at[near], owner[near])]
+        if len(out) and isinstance(redirect, Crossing):
+            out = self._cross(rows, at, out, redirect.may_cross)
         at[out] = np.column_stack([self.xs[rows[out]], self.ys[rows[out]]])
         gone[out] = 0.0
         new.x[rows], new.y[rows] = at.T
         new.gone[rows], new.free[rows] = gone, free - gone
+
+    def _cross(
+        self, rows: NDArray[np.intp], at: Floats, out: NDArray[np.intp], may: NDArray[np.bool_]
+    ) -> NDArray[np.intp]:
+        """Let dots go to the compartments they are sent to; return those of `out` that cannot."""
+        asked = out[may[self.order[rows[out]]]]
+        found = self.parts.at(at[asked])
+        goes = asked[found >= 0]
+        if len(goes):
+            self.compartment_of_dot = self.compartment_of_dot.copy()
+            self.compartment_of_dot[rows[goes]] = found[found >= 0]
+            self._slack, self._has_stars = np.inf, False  # all is found anew
+        return np.setdiff1d(out, goes)
 
     def measure(self, weighted: bool) -> Floats:
         """Return mass, centroid from the dot, area, second moment of cells, in the order given."""
@@ -368,7 +406,7 @@ class Cells:
         crowd, tree_of_cell, node = self._split_crowds(cell_start, order)
         if cancel is not None and cancel():
             return False
-        names = ["fixed", "compartment_of_dot", "order"]
+        names = ["fixed", "compartment_of_dot", "order", "_is_met"]
         sorted_rows: dict[str, Any] = {
             "_cell_start": cell_start, "_crowd": crowd, "_tree_of_cell": tree_of_cell,
             "_node": node,

@@ -132,6 +132,16 @@ class Compartments:
         """
         if shape_of_dot is not None:
             self._check_numbers(shape_of_dot)
+        found = self.at(points, shape_of_dot)
+        outside = np.flatnonzero(found < 0)
+        if len(outside):
+            self._refuse(points, outside, shape_of_dot)
+        return found
+
+    def at(
+        self, points: NDArray[np.float64], shape_of_dot: NDArray[np.int32] | None = None
+    ) -> NDArray[np.int32]:
+        """Return the compartment of each point, of its shape if that is given; -1 outside."""
         found = np.full(len(points), -1, np.int32)
         if len(self) == 1 and self.kind[0] == RECTANGLE:
             x0, y0, x1, y1 = self.box[0]
@@ -148,9 +158,6 @@ class Compartments:
                 which, dot = which[fits], dot[fits]
             backwards = np.argsort(which, kind="stable")[::-1]  # the lowest is written last
             found[dot[backwards]] = which[backwards]
-        outside = np.flatnonzero(found < 0)
-        if len(outside):
-            self._refuse(points, outside, shape_of_dot)
         return found
 
     def contain(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TypeAlias
 
 import numpy as np
@@ -75,18 +75,37 @@ def parts_met(
     GeometryError
         If none is left.
     """
-    found, notes = dict[int, Shape](), list[str]()
+    found, missed = met_and_missed(drawing, parts)
+    if missed and not found:
+        raise none_left(missed.values())
+    return found, tuple(left_out(drawing, (k,), error) for k, error in missed.items())
+
+
+def met_and_missed(
+    drawing: Drawing, parts: Mapping[int, Shape]
+) -> tuple[dict[int, Shape], dict[int, GeometryError]]:
+    """Return where the dots of areas may lie, and what keeps others from having any."""
+    found, missed = dict[int, Shape](), dict[int, GeometryError]()
     for k, part in parts.items():
         try:
             found[k] = part_for_dots(drawing, k, part)
         except GeometryError as error:
-            if len(parts) == 1:
-                raise
-            name = drawing.areas[k].name if k in drawing.areas else str(k)
-            notes.append(f"area {name!r} was left out: {error}")
-    if parts and not found:
-        raise GeometryError("do not meet their areas", "patterns", "move them over the areas")
-    return found, tuple(notes)
+            missed[k] = error
+    return found, missed
+
+
+def left_out(drawing: Drawing, areas: Iterable[int], why: GeometryError) -> str:
+    """Return the words that tell of areas that are left out."""
+    names = [repr(drawing.areas[k].name if k in drawing.areas else str(k)) for k in areas]
+    if len(names) == 1:
+        return f"area {names[0]} was left out: {why}"
+    return f"areas {' and '.join(names)} were left out: {why}"
+
+
+def none_left(reasons: Iterable[GeometryError]) -> GeometryError:
+    """Return what to raise where each area that was asked for is left out."""
+    first, *more = reasons
+    return GeometryError("can hold no dots", "the areas", str(first)) if more else first
 
 
 def zone_of(line: Line) -> Shape:

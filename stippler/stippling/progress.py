@@ -39,6 +39,9 @@ class Progress:
         Mean movement of the last relaxation step; NaN outside relaxation.
     shortfall : Shortfall or None
         On "done".
+    line_of_dot, along_mm : (n,) int32 and float64, or None
+        Where there are lines: the one that each dot lies on, as the task numbers them, or -1; and
+        the arc length there.
     """
 
     stage: str
@@ -48,6 +51,8 @@ class Progress:
     radius_mm: NDArray[np.float32]
     movement_mm: float = math.nan
     shortfall: Shortfall | None = None
+    line_of_dot: NDArray[np.int32] | None = None
+    along_mm: NDArray[np.float64] | None = None
 
 
 def notes_on(result: Progress, what: str = "page") -> tuple[str, ...]:

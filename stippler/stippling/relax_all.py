@@ -6,7 +6,7 @@ solved again where the dots come to lie; sizes that a person has set stay.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,8 @@ from scipy.spatial import KDTree
 from stippler.drawing.reference import Reference
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
+from stippler.stippling.ground import brought_into
+from stippler.stippling.on_lines import OnLines
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.progress import DONE, RELAXED, Progress, Step
@@ -34,6 +36,9 @@ _SOLVED = 0.08  # a size nearer to the solved one than this share of it was solv
 _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
 _WHOLE = 1e-6  # of the page
+_INSET_MM = 1e-6  # how far within the border a dot lies that was brought back
+_FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
+_BY_CELLS = ("lloyd", "even")  # methods whose steps others may redirect
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
 
 Floats = NDArray[np.float64]
@@ -54,13 +59,27 @@ class StandingDraft:
     points: Floats
     radius_mm: NDArray[np.float32]
     sheet: _Sheet | None = None
+    on_lines: OnLines | None = None
 
     @classmethod
     def of(cls, task: Task) -> StandingDraft:
         """Begin a task that moves what is there."""
         standing = task.standing
         assert standing is not None, "there is nothing to be moved"
-        return cls(task, standing, standing.position_mm, standing.radius_mm)
+        draft = cls(task, standing, standing.position_mm, standing.radius_mm)
+        if task.lines is not None and task.style.relaxation in _BY_CELLS and len(draft.points):
+            draft.on_lines = OnLines(task.lines, draft.points, draft.parts, draft.tone)
+            if draft.on_lines.is_idle:
+                draft.on_lines = None
+        return draft
+
+    @property
+    def tone(self) -> Callable[[Floats], Floats] | None:
+        """How dense dots are to lie along lines."""
+        reference = self.task.reference
+        if reference is None or not self.task.style.weighted:
+            return None
+        return lambda places: _FAINTEST + reference.at(places).astype(np.float64)
 
     @property
     def n_steps(self) -> int:
@@ -82,7 +101,14 @@ class StandingDraft:
     def fixed(self) -> NDArray[np.bool_]:
         """Those that stay where they are."""
         fixed = self.standing.fixed
-        return np.zeros(len(self.points), np.bool_) if fixed is None else fixed
+        if fixed is None:
+            fixed = np.zeros(len(self.points), np.bool_)
+        return fixed if self.on_lines is None else fixed & ~self.on_lines.on
+
+    @property
+    def on_line(self) -> NDArray[np.bool_]:
+        """Those that move along lines."""
+        return np.zeros(len(self.points), np.bool_) if self.on_lines is None else self.on_lines.on
 
     def without_long_waves(self, still: NDArray[np.bool_], sheet: _Sheet | None = None) -> Floats:
         """Return where the dots lie without long waves in them, each within its part."""
@@ -92,15 +118,36 @@ class StandingDraft:
         density = None if sheet is None else sheet.density_at
         return with_long_waves_gone(self.points, self.parts, of_dot, still, density)
 
+    def come_home(self) -> Floats:
+        """Return where the dots are, those that have left their own areas brought back."""
+        homes = self.standing.homes
+        points = self.points.copy() if homes else self.points
+        for rows, home in homes:
+            at = points[rows]
+            out = np.flatnonzero(~shapely.intersects_xy(home, at[:, 0], at[:, 1]))
+            if len(out):
+                points[rows[out]] = brought_into(home, at[out], _INSET_MM)
+        return points
+
     def progress(self, step: Step, watched: bool) -> Progress:
         """Return a snapshot after a step."""
-        points = _frozen(self.points) if watched else np.empty((0, 2))
+        points = _frozen(self.come_home()) if watched else np.empty((0, 2))
         sizes = self.radius_mm if watched else np.empty(0, np.float32)
-        return Progress(step.stage, step.done, step.total, points, _frozen(sizes), step.movement_mm)
+        line, along = self._lines_of_dots() if watched else (None, None)
+        return Progress(step.stage, step.done, step.total, points, _frozen(sizes),
+                        step.movement_mm, None, line, along)  # fmt: skip
 
     def finished(self) -> Progress:
         """Return the last snapshot."""
-        return Progress(DONE, 1, 1, _frozen(self.points), _frozen(self.radius_mm))
+        points, sizes = _frozen(self.come_home()), _frozen(self.radius_mm)
+        line, along = self._lines_of_dots()
+        return Progress(DONE, 1, 1, points, sizes, line_of_dot=line, along_mm=along)
+
+    def _lines_of_dots(self) -> tuple[NDArray[np.int32] | None, Floats | None]:
+        if self.on_lines is None:
+            return None, None
+        self.on_lines.take_back_refused(self.points)
+        return _frozen(self.on_lines.line.astype(np.int32)), _frozen(self.on_lines.along)
 
 
 def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
@@ -116,10 +163,23 @@ def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
 
 def size_again(draft: StandingDraft, watched: bool) -> Iterator[Step]:
     """Solve sizes for the places where the dots are now; those a person has set stay."""
+    draft.points = draft.come_home()
     if draft.sheet is not None:
         solved = draft.sheet.solved_at(draft.points)
         draft.radius_mm = draft.radius_mm if solved is None else solved
     yield from ()
+
+
+def sizes_over_solved(task: Task) -> NDArray[np.float64]:
+    """Return how much larger standing dots are than their tone asks for, (n,).
+
+    1 for those whose sizes were solved; others were set by a person.
+    """
+    draft, reference = StandingDraft.of(task), task.reference
+    assert reference is not None, "without one there is no tone to compare with"
+    sheet = _Sheet(draft, reference)
+    share = draft.radius_mm / np.maximum(sheet.solved_mm, 1e-9)
+    return np.where(sheet.is_solved, 1.0, share)
 
 
 def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
@@ -131,12 +191,12 @@ def _by_method(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     evenly = reference is None and style.relaxation == "even"
     method = "lloyd" if style.relaxation == "even" and not evenly else style.relaxation
     if evenly:
-        draft.points = draft.without_long_waves(draft.fixed)
+        draft.points = draft.without_long_waves(draft.fixed | draft.on_line)
     engine = Relaxation(
         draft.points, draft.parts, draft.fixed, standing.part_of_dot, field, method=method
     )
     for _ in range(total):
-        report = engine.step()
+        report = engine.step(redirect=draft.on_lines)
         draft.points = engine.points
         yield report
         if evenly and report.largest_mm <= AT_REST * engine.spacing_mm:
@@ -148,38 +208,52 @@ def _keeping_tone(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     assert reference is not None, "without one there is no tone to keep"
     before = draft.points
     sheet = _Sheet(draft, reference)
-    still = draft.fixed | sheet.beside(before)
-    start = draft.without_long_waves(still, sheet)
+    on_line = draft.on_line
+    beside = sheet.beside(before)
+    still = (draft.fixed | beside) & ~on_line
+    start = draft.without_long_waves(still | on_line, sheet)
     field = DensityField(sheet.raster.darkness, sheet.raster.pixel_mm)
 
     def engine_for(still: NDArray[np.bool_]) -> Relaxation:
         return Relaxation(
             start, draft.parts, still, standing.part_of_dot, field,
-            method="even", wanted=sheet.wanted, radius_mm=sheet.sizes,
+            method="even", wanted=sheet.wanted, radius_mm=sheet.sizes, is_met=beside,
         )  # fmt: skip
 
     engine = engine_for(still)
     engine.set_rules(AT_LAST)
-    report = engine.step()
+    lines = None if draft.on_lines is None else draft.on_lines.copy()
+    report = engine.step(redirect=lines)
     awake = _around_restless(start, engine.points, ~still)
     awake |= (start != before).any(axis=1)
+    if lines is not None:
+        awake |= _wakened_by(lines, start, engine.points, on_line, engine.spacing_mm)
     if not awake.any():
         yield report
         return
+    awake |= on_line
     engine = engine_for(~awake)
     draft.sheet = sheet
     last = int(bool(sheet.is_solved.any()) and total > 1)
     for _ in range(total - last):
-        report = engine.step()
+        report = engine.step(redirect=draft.on_lines)
         draft.points = engine.points
         yield report
         if report.largest_mm <= AT_REST * engine.spacing_mm:
             break
     if last:
         engine.set_rules(TO_INK)
-        report = engine.step()
+        report = engine.step(redirect=draft.on_lines)
         draft.points = engine.points
         yield report
+
+
+def _wakened_by(
+    lines: OnLines, before: Floats, after: Floats, on_line: NDArray[np.bool_], spacing_mm: float
+) -> NDArray[np.bool_]:
+    """Tell which dots move along lines, or are drawn to one."""
+    moved = np.hypot(*(after - before).T) > AT_REST * spacing_mm
+    return np.asarray((moved & on_line) | (lines.on & ~on_line) | lines.drawn)
 
 
 def _frozen(values: NDArray[Any]) -> NDArray[Any]:
@@ -223,7 +297,7 @@ class _Sheet:
         sizes = radius_mm.astype(np.float64)
         self.rule = DotRule(float(sizes.min()) / pixel, float(sizes.max()) / pixel)
         self.is_solved = np.zeros(len(sizes), np.bool_)
-        solved = self._solved(position_mm)
+        self.solved_mm = solved = self._solved(position_mm)
         self.is_solved = np.abs(sizes - solved) < _SOLVED * solved
         levels, typical = self._size_by_darkness(position_mm, sizes)
         per_dot = np.pi * typical**2

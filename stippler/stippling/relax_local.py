@@ -20,7 +20,7 @@ from stippler.stippling.dotgrid import DotGrid
 from stippler.stippling.field_sums import Weights, running_sums
 
 _NO_FLAGS = np.empty(0, np.uint8)
-_NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
+NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 _NO_CELLS = np.empty((0, 6))
 _NO_NODES = np.empty((0, 4))
 
@@ -168,7 +168,7 @@ class LocalRelaxation:
         self,
         slots: NDArray[np.int32],
         cells: NDArray[np.float64] = _NO_CELLS,
-        stars: Stars = _NO_STARS,
+        stars: Stars = NO_STARS,
         spacing: Spacing = LLOYD,
     ) -> None:
         """Compute cells and where they take their dots; measure and note them if there is room."""

@@ -6,6 +6,7 @@ Deussen et al. 2000, section 7: dots are inserted or deleted, and what is near t
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -17,7 +18,7 @@ from stippler.drawing.deformation import Deformation
 from stippler.drawing.dots import FREE, NO_CURVE, Dots, first_seeds
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import MAX_DOTS
-from stippler.errors import ParameterError
+from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.density import DensityField
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
     from stippler.drawing.area_edits import with_policies_of
     from stippler.drawing.drawing import Page
     from stippler.drawing.partition import Partition
-    from stippler.stippling.part_of_area import parts_met
+    from stippler.stippling.part_of_area import met_and_missed
 
     f, original = scaling.factor, drawing
     reference = drawing.reference
@@ -125,7 +126,7 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
             page=Page(drawing.page.width_mm * f, drawing.page.height_mm * f),
             areas={k: replace(a, outline_mm=outlines[k]) for k, a in drawing.areas.items()},
             lines={k: _scaled_line(line, by, f) for k, line in drawing.lines.items()},
-            patterns={k: _scaled_pattern(p, f) for k, p in drawing.patterns.items()},
+            patterns={k: scaled_pattern(p, f) for k, p in drawing.patterns.items()},
             borders={},  # made anew from the outlines, on the grid
         )
         drawing = with_policies_of(original, drawing, f)
@@ -135,17 +136,83 @@ def scaled_drawing(drawing: Whole, scaling: Scaling) -> Whole:
         toned = frozenset(k for k in drawing.areas if drawing.style_of(k).sizes == "tone")
     partition = Partition(drawing.outlines())
     owned = {k: partition.part_of(k) for k in drawing.areas}
-    parts = owned | parts_met(drawing, owned)[0]
+    parts = owned | met_and_missed(drawing, owned)[0]
     dots = scaled_dots(before, parts, scaling, toned)
     drawing = replace(drawing, dots=dots, reference=reference)
-    for area in sorted(toned):
-        if np.count_nonzero(before.area == area) != np.count_nonzero(dots.area == area):
-            _solve(drawing, area, parts[area], scaling.least_radius_mm)
+    differ = [k for k in sorted(toned) if (before.area == k).sum() != (dots.area == k).sum()]
+    by_hand = hand_sizes(original, differ)
+    for area in differ:
+        solve_sizes(drawing, area, parts[area], scaling, by_hand.get(area))
     return drawing
 
 
-def _solve(drawing: Drawing, area: int, part: Polygon | MultiPolygon, least_mm: float) -> None:
-    """Let an area's dots settle in its tone, and size them for it, as when they were made."""
+def patterns_aside(drawing: Drawing) -> tuple[str, ...]:
+    """Return what there is to say of areas that are scaled as if they had no pattern."""
+    from stippler.drawing.partition import Partition
+    from stippler.stippling.part_of_area import met_and_missed, pattern_of
+
+    partition = Partition(drawing.outlines())
+    laid = [k for k in drawing.areas if pattern_of(drawing, k) is not None]
+    _, missed = met_and_missed(drawing, {k: partition.part_of(k) for k in laid})
+    return tuple(
+        f"area {drawing.areas[k].name!r} is scaled as if it had no pattern: {error}"
+        for k, error in missed.items()
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandSizes:
+    """Which dots of an area a person has made larger or smaller than their tone asks for.
+
+    Attributes
+    ----------
+    position_mm : (n, 2) float64
+    share : (n,) float64
+        Of the size that the tone asks for; 1 for most.
+    """
+
+    position_mm: Points
+    share: Points
+
+    def at(self, position_mm: Points, factor: float) -> Points:
+        """Return the shares of dots that have come to lie elsewhere: the nearest one's."""
+        from scipy.spatial import cKDTree
+
+        nearest = cKDTree(self.position_mm * factor).query(position_mm, workers=-1)[1]
+        return np.asarray(self.share[nearest])
+
+
+def hand_sizes(drawing: Drawing, areas: Collection[int]) -> dict[int, HandSizes]:
+    """Return what a person has done to the sizes of areas' dots, where it is anything."""
+    from stippler.stippling.relax_all import sizes_over_solved
+    from stippler.stippling.tasks import relaxing
+
+    if drawing.reference is None or not areas:
+        return {}
+    try:
+        task, rows, _ = relaxing(drawing, drawing.style_of(min(areas)), 1, areas)
+    except GeometryError:  # patterns miss them all: there are no cells to solve sizes in
+        return {}
+    if len(rows) < _FEWEST:
+        return {}
+    dots, share = drawing.dots, sizes_over_solved(task)
+    share[dots.is_fixed(rows)] = 1.0
+    owner = dots.area[rows]
+    changed = np.unique(owner[share != 1.0]).tolist()
+    return {k: HandSizes(dots.position_mm[rows[owner == k]], share[owner == k]) for k in changed}
+
+
+def solve_sizes(
+    drawing: Drawing,
+    area: int,
+    part: Polygon | MultiPolygon,
+    scaling: Scaling,
+    by_hand: HandSizes | None,
+) -> None:
+    """Let an area's dots settle in its tone, and size them for it, as when they were made.
+
+    Those that a person has made larger or smaller are so again.
+    """
     import shapely
 
     from stippler.stippling.pipeline import run
@@ -162,7 +229,10 @@ def _solve(drawing: Drawing, area: int, part: Polygon | MultiPolygon, least_mm: 
     *_, made = run(Task(style, reference, SETTLE, (part,), standing), snapshots=False)
     free = rows[~fixed]
     dots.position_mm[free] = made.position_mm[~fixed]
-    dots.radius_mm[free] = np.maximum(made.radius_mm[~fixed], least_mm)
+    sizes = made.radius_mm[~fixed].astype(np.float64)
+    if by_hand is not None:
+        sizes *= by_hand.at(dots.position_mm[free], scaling.factor)
+    dots.radius_mm[free] = np.maximum(sizes, scaling.least_radius_mm)
 
 
 def _scaled_line(line: Any, by: Deformation, f: float) -> Any:
@@ -171,15 +241,19 @@ def _scaled_line(line: Any, by: Deformation, f: float) -> Any:
     return replace(line.deformed(by), width_mm=width, **sizes)
 
 
-def _scaled_pattern(pattern: Any, f: float) -> Any:
-    old = pattern.deformation
-    matrix = np.diag([f, f, 1.0]) @ np.array(old.matrix).reshape(3, 3)
+def scaled_pattern(pattern: Any, f: float, shift_mm: tuple[float, float] = (0.0, 0.0)) -> Any:
+    """Return a pattern with all lengths scaled about the page's corner, and moved then."""
+    old, (dx, dy) = pattern.deformation, shift_mm
+    by = np.array([[f, 0.0, dx], [0.0, f, dy], [0.0, 0.0, 1.0]])
+    matrix = by @ np.array(old.matrix).reshape(3, 3)
     cage = old.cage
     if cage is not None:
-        box = tuple(v * f for v in cage.box_mm)
+        x0, y0, x1, y1 = (v * f for v in cage.box_mm)
         moves = tuple((x * f, y * f) for x, y in cage.moves_mm)
-        cage = replace(cage, box_mm=box, moves_mm=moves)
-    pins = tuple(((a * f, b * f), (c * f, d * f)) for (a, b), (c, d) in old.pins_mm)
+        cage = replace(cage, box_mm=(x0 + dx, y0 + dy, x1 + dx, y1 + dy), moves_mm=moves)
+    pins = tuple(
+        ((a * f + dx, b * f + dy), (c * f + dx, d * f + dy)) for (a, b), (c, d) in old.pins_mm
+    )
     return replace(pattern, deformation=Deformation(tuple(matrix.ravel().tolist()), cage, pins))
 
 

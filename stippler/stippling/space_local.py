@@ -7,13 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stippler.kernels.cells.kept_cells import verify_stars
-from stippler.kernels.cells.relaxation import INNER, RIM
 from stippler.kernels.cells.spacing import HEXAGONAL
 from stippler.kernels.cells.spacing_lanes import MASS, NEIGHBOUR, RADIUS
-from stippler.kernels.cells.surroundings import mean_among_alike, ring_around
+from stippler.kernels.cells.surroundings import mean_among_alike, move_by_rules, ring_around
 from stippler.kernels.cells.tables import Spacing, Stars
-from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES
 from stippler.stippling.relax_local import LocalRelaxation
 from stippler.stippling.spacing import Rules
@@ -40,9 +37,10 @@ class Spaced:
     Attributes
     ----------
     moved_mm : (k, 2) float64
-    ink_mm2, per_ink : (k,) float64
-        The ink that the dots' cells ask for, 0 without a picture; the square of the radius for
-        each mm2 of it that was solved for the tone around here, 0 where a dot's was not.
+    apart_mm : (k,) float64
+        How far the dots are to be from their neighbours.
+    is_solved : (k,) bool
+        Whether the dots have the sizes that their cells' tone asks for.
     at_mm : (m, 2) float64
         Places of all dots that were measured: those asked for, then those around them.
     reach_mm : (m,) float64
@@ -50,8 +48,8 @@ class Spaced:
     """
 
     moved_mm: Floats
-    ink_mm2: Floats
-    per_ink: Floats
+    apart_mm: Floats
+    is_solved: NDArray[np.bool_]
     at_mm: Floats
     reach_mm: Floats
 
@@ -64,7 +62,13 @@ class LocalSpacing(LocalRelaxation):
     of them moves.
     """
 
-    def space(self, dots: ArrayLike, rules: Rules, radius_mm: Floats | None = None) -> Spaced:
+    def space(
+        self,
+        dots: ArrayLike,
+        rules: Rules,
+        radius_mm: Floats | None = None,
+        is_met: NDArray[np.bool_] | None = None,
+    ) -> Spaced:
         """Return where a step of the rules would take dots; nothing moves.
 
         Parameters
@@ -74,36 +78,39 @@ class LocalSpacing(LocalRelaxation):
         radius_mm : (n,) float64, optional
             Sizes of all dots, by number: dots are then to be as dense as the tone asks for with
             these. Without them dots are to be equally dense.
+        is_met : (n,) bool, optional
+            Dots, by number, whose mass counts as what they want: nothing is known of all of it.
         """
         chosen = self._slot_of_dot[np.asarray(dots, np.int32)]
         n_slots = len(self._moves.x)
         cells = np.zeros((n_slots, 6))
         stars = Stars(np.zeros((n_slots, LANES), np.int32), np.zeros(n_slots, np.uint8), _NO_FLAGS)
         self._compute(chosen, cells, stars)
-        kinds = self._moves.kind[chosen]
         is_known = np.zeros(n_slots, np.uint8)
         is_known[chosen] = 1
         ring = np.empty(n_slots, np.int32)
         ring = ring[: ring_around(chosen, stars.around, stars.n, is_known, ring)]
         measured = np.concatenate([chosen, ring])
         self._compute(ring, cells, stars)
-        ink, per_ink = np.zeros((2, len(measured)))
+        is_solved = np.zeros(len(measured), np.bool_)
         per_area, radii = np.ones(len(measured)), np.zeros(len(measured))
         if radius_mm is not None:
-            ink, per_ink, per_area, radii = self._by_tone(measured, cells, stars, radius_mm)
-        wants = self._wants(measured, cells[measured, 3] * per_area, per_area, radii)
-        self._move_by(rules, chosen, kinds, stars, wants)
+            is_solved, per_area, radii = self._by_tone(measured, cells, stars, radius_mm)
+        mass = cells[measured, 3] * per_area
+        met = None if is_met is None else is_met[self._dot_of_slot[measured]]
+        wants = self._wants(measured, mass, per_area, radii, met)
+        self._move_by(rules, chosen, cells, stars, wants)
         return Spaced(
             np.column_stack([self._moves.x[chosen], self._moves.y[chosen]]),
-            ink[: len(chosen)], per_ink[: len(chosen)],
+            wants[chosen, NEIGHBOUR], is_solved[: len(chosen)],
             np.column_stack([self._xs[measured], self._ys[measured]]),
             np.sqrt(cells[measured, 5]),
         )  # fmt: skip
 
     def _by_tone(
         self, measured: Slots, cells: Floats, stars: Stars, radius_mm: Floats
-    ) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return what `Spaced` has of ink, dots per area, and how large dots of a tone are.
+    ) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Return which sizes are solved, dots per area, and how large dots of a tone are.
 
         Sizes solved for the tone follow their cells, whatever the spacing; so what counts is their
         mean among neighbours of about the same tone. Dots that stand out among these have a size
@@ -116,52 +123,52 @@ class LocalSpacing(LocalRelaxation):
         squared = own * own
         place = np.full(len(self._moves.x), -1, np.int32)
         place[measured] = np.arange(len(measured), dtype=np.int32)
-
-        def among_alike(values: Floats) -> Floats:
-            mean = np.empty(len(measured))
-            mean_among_alike(measured, stars.around, stars.n, place, darkness, _ALIKE, values, mean)
-            return mean
-
-        mean = among_alike(squared)
-        per_ink = squared / np.maximum(ink, _FAR)
-        is_solved = np.abs(np.sqrt(np.pi * per_ink) - 1.0) < SOLVED
-        per_ink = among_alike(np.where(is_solved, per_ink, 1.0 / np.pi)) * is_solved
+        mean = np.empty(len(measured))
+        mean_among_alike(measured, stars.around, stars.n, place, darkness, _ALIKE, squared, mean)
+        asked = np.sqrt(ink * (1.0 / np.pi))
+        is_solved = np.abs(own - asked) < SOLVED * asked
         squared = np.where(np.abs(squared - mean) < _OWN * mean, mean, squared)
         per_area = ink / np.maximum(area * np.pi * squared, _FAR)
-        return ink, per_ink, per_area, np.sqrt(squared)
+        return is_solved, per_area, np.sqrt(squared)
 
-    def _wants(self, measured: Slots, mass: Floats, per_area: Floats, radii: Floats) -> Floats:
-        """Return what dots want, by slot, made to fit how many of each compartment there are."""
-        if len(self._parts) == 1:
-            total = float(mass.sum())
-            unit = np.array(len(mass) / total if total > 0.0 else 1.0)
-        else:
+    def _wants(
+        self,
+        measured: Slots,
+        mass: Floats,
+        per_area: Floats,
+        radii: Floats,
+        is_met: NDArray[np.bool_] | None,
+    ) -> Floats:
+        """Return what dots want, by slot, made to fit how many of each compartment there are.
+
+        Dots that were not measured, beyond cells of very many sides, want what others do on
+        average.
+        """
+        count, total = len(mass), float(mass.sum())
+        unit = np.array(count / total if total > 0.0 else 1.0)
+        if len(self._parts) > 1:
             owner = self._compartment_of_slot[measured]
-            count, sums = np.bincount(owner), np.bincount(owner, mass)
-            unit = np.divide(count, sums, out=np.ones(len(sums)), where=sums > 0.0)[owner]
-        wants = np.ones((len(self._moves.x), 3))
-        wants[measured, MASS] = mass * unit
-        wants[measured, NEIGHBOUR] = np.sqrt(HEXAGONAL / np.maximum(per_area * unit, _FAR))
+            counts, sums = np.bincount(owner), np.bincount(owner, mass)
+            unit = np.divide(counts, sums, out=np.ones(len(sums)), where=sums > 0.0)[owner]
+        apart = np.sqrt(HEXAGONAL / np.maximum(per_area * unit, _FAR))
+        wants = np.empty((len(self._moves.x), 3))
+        wants[:] = (1.0, apart.mean(), radii.mean()) if count else 1.0
+        mass = mass * unit
+        wants[measured, MASS] = mass if is_met is None else np.where(is_met, 1.0, mass)
+        wants[measured, NEIGHBOUR] = apart
         wants[measured, RADIUS] = radii
         return wants
 
     def _move_by(
-        self, rules: Rules, chosen: Slots, kinds: NDArray[np.uint8], stars: Stars, wants: Floats
+        self, rules: Rules, chosen: Slots, cells: Floats, stars: Stars, wants: Floats
     ) -> None:
         """Move the chosen by what all want; those at a border from cells made once more."""
-        n_parts, n_slots = len(self._parts), len(self._moves.x)
-        of_part = np.tile(np.array([0.0, 1.0, 1.0, 1.0]), (n_parts, 1))
+        of_part = np.array([(0.0, 1.0, 1.0, 1.0)] * len(self._parts))
         spacing = Spacing(
-            wants, np.empty((n_slots, 3)), _ONE_LEVEL, of_part, _NO_RADII, rules.array()
-        )
-        self._moves.kind[:] = RIM
-        self._moves.kind[chosen] = np.where(kinds == INNER, INNER, RIM)
-        todo = np.empty(n_slots, np.uint8)
-        parallel_for(
-            verify_stars, n_slots, self._dots._replace(fixed=np.zeros(n_slots, np.bool_)),
-            self._table, self._grid.border, self._field, 1.0, self._moves, stars, spacing, todo,
-            grain=1024, chunks=1,
+            wants, np.empty_like(wants), _ONE_LEVEL, of_part, _NO_RADII, rules.array()
         )  # fmt: skip
-        left = chosen[todo[chosen] != 0]
+        todo = np.empty(len(chosen), np.uint8)
+        move_by_rules(chosen, self._dots, self._table, cells, stars, spacing, self._moves, todo)
+        left = chosen[todo != 0]
         if len(left):
             self._compute(left, spacing=spacing)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely.geometry import MultiLineString, MultiPolygon, Polygon
 
+    from stippler.drawing.line import Line
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import Style
     from stippler.stippling.beyond import Seen
@@ -34,12 +35,39 @@ class Standing:
         Those that stay where they are; None is none.
     part_of_dot : (n,) int or None
         Which of the task's parts each lies in; None where there is only one.
+    homes : tuple of (rows, polygon)
+        Within which dots have to be that see beyond it.
     """
 
     position_mm: NDArray[np.float64]
     radius_mm: NDArray[np.float32]
     fixed: NDArray[np.bool_] | None = None
     part_of_dot: NDArray[np.integer] | None = None
+    homes: tuple[tuple[NDArray[np.intp], Polygon | MultiPolygon], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MetLines:
+    """Lines that dots lie on, or line up on, and which dots do so already.
+
+    Attributes
+    ----------
+    lines : tuple of Line
+    ids : tuple of int
+        What the drawing calls them.
+    line_of_dot : (n,) int32
+        Index into `lines`, -1 for a dot on none.
+    along_mm : (n,) float64
+        Arc length there.
+    may_join : (n,) bool
+        Dots that may be drawn onto a line that they adhere to.
+    """
+
+    lines: tuple[Line, ...]
+    ids: tuple[int, ...]
+    line_of_dot: NDArray[np.int32]
+    along_mm: NDArray[np.float64]
+    may_join: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +95,8 @@ class Task:
         Pieces of the border that are to dots something else than the style says.
     seen_mm : tuple of Seen
         Through which pieces of the border which neighbours' dots are seen.
+    lines : MetLines or None
+        What the standing dots line up on while they are moved.
     """
 
     style: Style
@@ -79,3 +109,4 @@ class Task:
     neighbours_mm: NDArray[np.float64] | None = None
     pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()
     seen_mm: tuple[Seen, ...] = ()
+    lines: MetLines | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,17 +10,20 @@ import shapely
 from numpy.typing import NDArray
 
 from stippler.drawing.area import PAGE_AREA
+from stippler.drawing.dots import FREE, ON_CURVE, Dots
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.line import ADHERE, Line
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.beyond import Seen
+from stippler.stippling.beyond import seen_of
 from stippler.stippling.border_policies import BorderPolicies
 from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
+from stippler.stippling.relax_views import View, views_of
 from stippler.stippling.shares import number_of_areas, number_of_some
 from stippler.stippling.style_tone import toned_by_area
-from stippler.stippling.task import RELAX, Standing, Task
+from stippler.stippling.task import RELAX, MetLines, Standing, Task
 
 _LEAST_MARGIN_MM, _MARGIN = 1.0, 0.05  # around an area, of its side: there its neighbours lie
 _WHOLE = 1e-9  # of the page
@@ -32,6 +35,8 @@ def relaxing(
     drawing: Drawing, style: Style, steps: int, areas: Collection[int] | None = None
 ) -> tuple[Task, Rows, tuple[str, ...]]:
     """Return the task of relaxing a drawing's dots, the rows that it moves, and what is left out.
+
+    Dots that areas see through their borders come after those rows in it, and stand still.
 
     Parameters
     ----------
@@ -52,14 +57,75 @@ def relaxing(
     if areas is not None:
         mine &= np.isin(dots.area, list(areas))
     part_of_row, cut, notes = _cut(drawing, partition, mine)
+    lines = lines_met(drawing, dots.take(np.flatnonzero(mine))) if drawing.lines else None
+    views: list[View] = []
+    if lines is None:  # dots on lines stay in their areas, and see none but these
+        moved = [k for k in np.unique(part_of_row[mine]).tolist() if k >= 0]
+        views = list(views_of(drawing, partition, moved, mine))
+    for view in views:  # an area's number stands for all that are seen with it
+        own = np.flatnonzero(mine & np.isin(dots.area, view.areas))
+        mine[own[~shapely.intersects_xy(view.outline, *dots.position_mm[own].T)]] = False
+        part_of_row[own] = view.areas[0]
     rows = np.flatnonzero(mine)
-    some = dots if len(rows) == len(dots) else dots.take(rows)
-    used, part_of_dot = np.unique(part_of_row[rows], return_inverse=True)
-    standing = Standing(some.position_mm, some.radius_mm, some.fixed, part_of_dot)
-    parts = tuple(cut[-k] if k < 0 else partition.part_of(k) for k in used.tolist())
+    standing, used = _standing(drawing, partition, rows, part_of_row, views)
+    if lines is not None:
+        fixed = (dots.constraint[rows] != FREE) & (lines.line_of_dot < 0)
+        standing = replace(standing, fixed=fixed)
+    outlines = {view.areas[0]: view.outline for view in views}
+    parts = tuple(
+        cut[-k] if k < 0 else outlines.get(k) or partition.part_of(k) for k in used.tolist()
+    )
     if cut and reference is None and len(rows) < FEW * len(parts):
         style = replace(style, spacing="lloyd")
-    return Task(style, reference, RELAX, parts, standing, steps=steps), rows, notes
+    task = Task(style, reference, RELAX, parts, standing, steps=steps, lines=lines)
+    return task, rows, notes
+
+
+def _standing(
+    drawing: Drawing,
+    partition: Partition,
+    rows: Rows,
+    part_of_row: NDArray[np.int64],
+    views: Sequence[View],
+) -> tuple[Standing, NDArray[np.int64]]:
+    """Return the dots that are moved and those that are seen, and whose parts they lie in."""
+    dots = drawing.dots
+    everyone = np.concatenate([rows, *(view.beyond for view in views)])
+    some = dots if len(everyone) == len(dots) == len(rows) else dots.take(everyone)
+    place = np.concatenate([
+        part_of_row[rows], *(np.full(len(view.beyond), view.areas[0]) for view in views),
+    ])  # fmt: skip
+    used, part_of_dot = np.unique(place, return_inverse=True)
+    fixed = some.fixed
+    if len(everyone) > len(rows):
+        fixed = fixed | (np.arange(len(everyone)) >= len(rows))
+    homes = tuple(
+        (np.flatnonzero(dots.area[rows] == k), partition.part_of(k))
+        for view in views for k in view.areas
+    )  # fmt: skip
+    return Standing(some.position_mm, some.radius_mm, fixed, part_of_dot, homes), used
+
+
+def lines_met(drawing: Drawing, dots: Dots) -> MetLines | None:
+    """Return the lines that some of a drawing's dots lie on or may line up on; None without any.
+
+    Dots of locked areas stay where they are.
+    """
+    if not drawing.lines:
+        return None
+    lines = {k: line for k, line in drawing.lines.items() if isinstance(line, Line)}
+    locked = [k for k, area in drawing.areas.items() if area.locked]
+    moves = ~np.isin(dots.area, locked)
+    on = moves & (dots.constraint == ON_CURVE) & np.isin(dots.curve, list(lines))
+    draws = any(line.meeting == ADHERE and not line.hidden for line in lines.values())
+    if not (on.any() or draws):
+        return None
+    ids = tuple(sorted(lines))
+    which = np.searchsorted(ids, dots.curve)
+    return MetLines(
+        tuple(lines[k] for k in ids), ids, np.where(on, which, -1).astype(np.int32),
+        dots.parameter.copy(), moves & (dots.constraint == FREE),
+    )  # fmt: skip
 
 
 def _cut(
@@ -174,10 +240,7 @@ def stippling(
     if part.is_empty:
         raise GeometryError("lies under others", f"area {areas[0]}", "give it room of its own")
     dots, around = drawing.dots, policies.seen_from(areas)
-    seen = tuple(
-        Seen(shared.through, shared.walls, partition.part_of(k))
-        for k, border in around.items() for shared in border
-    )  # fmt: skip
+    seen = seen_of(policies, areas)
     if near is None:
         x0, y0, x1, y1 = box_around(part)
         x, y = dots.position_mm.T

@@ -28,7 +28,7 @@ _ARROWS = {"left": -1, "right": 1, "down": -1, "up": 1}
 _REST_S = (
     0.3  # the pointer rests so long on a control in a panel that scrolls, until the wheel steps
 )
-_DRAG_PX = 2.0  # a shorter way is a click
+DRAG_PX = 2.0  # a shorter way is a click
 _OVER = imgui.HoveredFlags_.allow_when_disabled
 _NO_ITEM = 0
 _DEAD = -1
@@ -171,14 +171,14 @@ def draw_number(
     else:
         _draw_resting(widgets, name or label, value, about, control)
     widgets.note(name or label)
-    _look(numbers, control)
+    look_for(numbers, control)
     if numbers.open != control:
         value = _stepped(numbers, control, value, about)
         widgets.tip(tip)
     return value
 
 
-def _look(numbers: Numbers, control: int) -> None:
+def look_for(numbers: Numbers, control: int) -> None:
     """Note whether the pointer or the focus is on the last item, and whether a hand was on it."""
     if imgui.is_item_hovered(_OVER):
         alive = imgui.is_item_hovered()
@@ -216,7 +216,7 @@ def _draw_slider(widgets: Widgets, name: str, value: float, about: About, contro
         numbers.ask(control)
         imgui.internal.clear_active_id()
         return numbers.before[1] if numbers.before[0] == control else value
-    moved = imgui.is_mouse_dragging(imgui.MouseButton_.left, _DRAG_PX * widgets.scale)
+    moved = imgui.is_mouse_dragging(imgui.MouseButton_.left, DRAG_PX * widgets.scale)
     if not (imgui.is_item_active() and moved) or slid == value:
         return value
     return scale.held(scale.rounded(slid))

@@ -94,6 +94,32 @@ def test_distances_are_kept(seed, width, distance):
     assert k not in document.drawing.lines
 
 
+def test_dots_that_find_no_place_between_lines_are_taken_away_and_that_is_said():
+    document = document_of(1500)
+    before, said = state(document), []
+    document.begin("Lines")
+    for y in (18.0, 18.9, 19.8):
+        between = Line(f"at {y}", Path.polyline([(-5, y), (65, y)]), (0.0, 0.0),
+                       meeting="distance", distance_mm=0.6)  # fmt: skip
+        meet(document, add_line(document, between), lambda text, _: said.append(text))
+    document.commit()
+    y = document.dots.position_mm[:, 1]
+    assert (np.abs(y[:, None] - (18.0, 18.9, 19.8)).min(axis=1) >= 0.6 - 1e-6).all()
+    n_gone = 1500 - len(document.dots)
+    assert sum(int(text.split()[0]) for text in said) == n_gone
+    near = np.frombuffer(before[0][0]).reshape(-1, 2)[:, 1]
+    assert 0 < n_gone <= ((near > 17.3) & (near < 20.5)).sum()
+    document.undo()
+    assert state(document) == before
+
+
+def test_a_hidden_line_moves_no_dot():
+    document = document_of(800)
+    before = state(document)[0]
+    drawn(document, curve(meeting="distance", distance_mm=0.6, hidden=True))
+    assert state(document)[0] == before
+
+
 def test_a_line_that_leaves_the_page_leaves_its_dots_there():
     document = document_of()
     k = drawn(document, curve(meeting="adhere", reach_mm=2.0))

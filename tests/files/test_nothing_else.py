@@ -47,6 +47,8 @@ for path in hostile:
         end = "read"
     except StipplerError as error:
         end = "refused"
+    except Exception as error:
+        end = type(error).__name__
     seen, told[:] = sorted(set(told)), []
     print(path.name, end, *(one for one in seen if one != f"open {path}"), sep="|")
 """
@@ -56,7 +58,7 @@ class Shell:
     """What a pickle may hold: something to be done when it is read."""
 
     def __reduce__(self):
-        return print, ("a pickle was read",)
+        return len, ("a pickle was read",)
 
 
 def written(path, members):

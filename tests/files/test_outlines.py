@@ -103,7 +103,7 @@ class TestSvg:
         for entity in ('<!ENTITY a "aaaa">', '<!ENTITY a SYSTEM "file:///etc/passwd">'):
             file.write_text(f'<!DOCTYPE svg [{entity}]><svg xmlns="http://www.w3.org/2000/svg">'
                             '<text>&a;</text></svg>')  # fmt: skip
-            with pytest.raises(OutlineError, match="entities"):
+            with pytest.raises(OutlineError, match="defines entities"):
                 read_outlines(file)
 
     def test_uses_that_multiply_are_bounded(self, tmp_path):

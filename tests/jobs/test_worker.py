@@ -1,6 +1,7 @@
 """The worker, with jobs that wait for the test's word; nothing here sleeps."""
 
 import threading
+import weakref
 
 import pytest
 
@@ -205,3 +206,15 @@ def test_stop_without_a_job(worker):
     worker.stop()
     assert not worker.busy
     assert worker.poll() is None
+
+
+def test_what_a_job_held_goes_when_it_has_ended(worker, bell):
+    job = Gated(n=0)
+    held = weakref.ref(job)
+    worker.start(job)
+    del job
+    bell.wait()
+    assert worker.poll().ended == "finished"
+    with worker._changed:
+        assert worker._changed.wait_for(lambda: worker._running_id is None, WAIT_S)
+    assert held() is None

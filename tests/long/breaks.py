@@ -1,7 +1,7 @@
 """Whether the tests of what is promised fail where a promise is broken (`docs/reliability.md`).
 
     python tests/long/breaks.py            # every break, one after the other
-    python tests/long/breaks.py 3 9        # those of some promises
+    python tests/long/breaks.py 3 shader   # those of a promise, or with a word
 
 Each break is put into a copy of the tree by itself; the tests named beside it must fail there. The
 table of breaks is `tests/long/breaks.toml`; a break whose text is not found is an error.
@@ -22,10 +22,14 @@ ROOT = Path(__file__).parents[2]
 PARTS = ("stippler", "tests", "shaders", "assets", "benchmarks", "pyproject.toml")
 
 
-def main(promises: set[str]) -> int:
-    """Try the breaks; return how many no test noticed."""
+def main(words: set[str]) -> int:
+    """Try the breaks of some promises or with some words; return how many no test noticed."""
     breaks = tomllib.loads(Path(__file__).with_suffix(".toml").read_text())["break"]
-    chosen = [one for one in breaks if not promises or str(one["promise"]) in promises]
+    chosen = [
+        one
+        for one in breaks
+        if not words or str(one["promise"]) in words or any(word in one["what"] for word in words)
+    ]
     missed = 0
     with tempfile.TemporaryDirectory(prefix="breaks-") as folder:
         tree = Path(folder) / "tree"

@@ -15,6 +15,7 @@ judged as long as the function that it lies in stays as it is. `tests/long/judge
 from __future__ import annotations
 
 import json
+import math
 import os
 import random
 import resource
@@ -44,6 +45,7 @@ FOLDERS = ("stippler/files", "stippler/drawing")
 FAULTY = ("stippler.files", "stippler.drawing")
 MOST_S = float(os.environ.get("MUTANT_S", "60"))
 MOST_TESTS_S = MOST_S / 3
+_WALL = 6  # times the processor's time: others may use it, and a fault may wait for ever
 MOST_BYTES = 6 << 30
 
 
@@ -183,7 +185,7 @@ def judge(fault: Fault, covering: Covering) -> tuple[str, str]:
     tests = covering.tests_of(fault)
     if not tests:
         return "not reached", ""
-    found = _in_child(lambda: _run_tests(tests), fault, MOST_S)
+    found = _in_child(lambda: _run_tests(tests), fault, _WALL * MOST_S)
     if found is None:
         return "noticed", "time or memory"
     if found["failed"]:
@@ -229,6 +231,7 @@ def _begin_child(folder: str, fault: Fault | None) -> None:
     os.environ["HYPOTHESIS_PROFILE"] = "mutants"
     if fault is not None:
         resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(MOST_S), math.ceil(MOST_S) + 1))
         sys.meta_path.insert(0, _Finder(fault))
     out = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):

@@ -171,7 +171,7 @@ def test_relaxing_an_area_keeps_its_tone_and_leaves_it_alone_then() -> None:
 def test_a_number_is_shared_by_the_areas_of_a_style() -> None:
     made = document()
     made.drawing.areas[2] = Area("ring", RING, 1)
-    n = [one.task.style.n_dots for one in tasks_of(made, [1, 2])]
+    n = [one.task.style.n_dots for one in tasks_of(made, [1, 2])[0]]
     assert sum(n) == pytest.approx(220, abs=8)
     assert min(n) > 50
 

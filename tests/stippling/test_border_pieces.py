@@ -58,7 +58,7 @@ def beside(at, y0, y1) -> float:
 
 def test_one_arc_through_and_the_rest_walls():
     document = parted("through", "")
-    (task,) = tasks_of(document, [0, 1])
+    (task,) = tasks_of(document, [0, 1])[0]
     assert task.areas == (0, 1)
     process_now(document, [0, 1])
     dots = document.dots
@@ -73,7 +73,7 @@ def test_one_arc_through_and_the_rest_walls():
 
 def test_a_wall_in_what_sees_through_else():
     document = parted("wall", "", "through")
-    (task,) = tasks_of(document, [1, 0])
+    (task,) = tasks_of(document, [1, 0])[0]
     process_now(document, [1, 0])
     at = document.dots.position_mm
     assert beside(at, 0, 19) < 0.25

@@ -10,18 +10,16 @@ from hypothesis import strategies as st
 
 from stippler.drawing.deformation import Deformation
 from stippler.drawing.line import ADHERE, DISTANCE, Line
+from stippler.drawing.line_index import LineIndex, adhering, keeping_distance
 from stippler.drawing.planar.moves import smooth_path
 from stippler.drawing.planar.path import Path
 from stippler.errors import GeometryError, ParameterError
 from stippler.kernels.machine.pool import set_threads
 from stippler.stippling.lines import (
-    LineIndex,
     adhere,
-    adhering,
     border_lines,
     crossings,
     hatch_lines,
-    keeping_distance,
     row,
     spread,
     spread_all,

@@ -3,6 +3,7 @@
 import itertools
 import logging
 import time
+from pathlib import Path
 
 import moderngl
 import numpy as np
@@ -229,6 +230,34 @@ def test_an_exception_anywhere_is_told_logged_and_harmless(kept, tmp_path, monke
     host.settle()
     host.drag((650, 350), (670, 380), "left")
     assert app.session.document.history.n_done == 2  # the editor goes on
+
+
+def test_a_panel_that_fails_leaves_the_others_on_the_screen(kept, monkeypatch):
+    _, host = kept
+    monkeypatch.setattr("stippler.ui.editor_window.draw_status", boom)
+    host.key("s", ctrl=True, shift=True)
+    host.settle()
+    assert "the status bar failed" in host.said()
+    assert host.shown("path")  # of a dialog that is drawn after it
+
+
+def test_events_after_one_that_fails_are_taken(kept, monkeypatch):
+    """All in one frame: a drop that fails, and the end of a stroke that had begun before it."""
+    app, host = kept
+    monkeypatch.setattr(app.editor.popups.filing, "drop", boom)
+    n_dots = app.session.n_dots
+    host.move(700, 400)
+    host.press()
+    host.move(720, 430)
+    with host.batch():
+        host.drop(Path("any.png"))
+        host.move(740, 440)
+        host.release()
+    host.settle()
+    assert "the input failed" in host.said()
+    assert not app.session.document.in_stroke
+    assert app.session.document.history.n_done == 2
+    assert app.session.n_dots < n_dots
 
 
 def test_a_lost_gl_context_loses_no_drawing(kept):

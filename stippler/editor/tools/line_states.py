@@ -176,7 +176,7 @@ class Making:
         """Let dots meet it; it is a step of the history then."""
         if self._id is None:
             return
-        meet(desk.document, self._id)
+        meet(desk.document, self._id, desk.say)
         desk.document.commit()
         desk.lines.choose(self._id)
         self._id = None
@@ -281,7 +281,7 @@ class Moving(Drag):
 
     def _let_go(self, desk: Desk) -> ToolState:
         if self.before is not None:
-            meet(desk.document, self.k)
+            meet(desk.document, self.k, desk.say)
             desk.document.commit()
         return RESTING
 

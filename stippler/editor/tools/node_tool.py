@@ -89,10 +89,8 @@ class NodeTool(Tool):
         One for each source.
     """
 
-    commands = (
-        "nodes.smooth", "nodes.corner", "nodes.add", "nodes.remove", "nodes.none",
-        *(f"nodes.{name}" for name in BORDER_COMMANDS),
-    )  # fmt: skip
+    commands = ("nodes.smooth", "nodes.corner", "nodes.add", "nodes.remove", "nodes.none")
+    groups = (("Piece of border", tuple(f"nodes.{name}" for name in BORDER_COMMANDS)),)
     shows_areas = True
 
     def __init__(self) -> None:

@@ -194,6 +194,8 @@ class Tool:
         Its panel, the palette and what is kept for the next start are made of them.
     commands : tuple of str
         Names of commands that its panel offers as buttons.
+    groups : tuple of (str, tuple of str)
+        More of them, each under a heading of its own.
     shows_areas : bool
         Whether borders of areas are to be seen while it is at hand.
     """
@@ -203,6 +205,7 @@ class Tool:
     key = ""
     tip = ""
     commands: tuple[str, ...] = ()
+    groups: tuple[tuple[str, tuple[str, ...]], ...] = ()
     shows_areas = False
 
     @property

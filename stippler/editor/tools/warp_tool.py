@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stippler.drawing.parameter import Parameter, by_default
 from stippler.editor.events import LEFT, Event, Pressed
-from stippler.editor.line_edits import lines_of, meet, set_line
+from stippler.editor.line_edits import clear_zones, lines_of, meet, set_line
 from stippler.editor.messages import WARNING
 from stippler.editor.tools import bending
 from stippler.editor.tools.drag import Drag
@@ -195,9 +195,11 @@ class Warping(Drag):
         document = desk.document
         if not document.in_stroke or self.now is None:
             return RESTING
+        from stippler.drawing.bend_areas import bend_borders
+
         try:
             if self.target.areas:
-                _bend_borders(document, self.target.areas, self.now)
+                bend_borders(document, self.target.areas, self.now)
                 _bend_patterns(document, self.target, self.now)
         except GeometryError as error:
             desk.say(str(error), WARNING)
@@ -205,7 +207,8 @@ class Warping(Drag):
             return RESTING
         self._keep_tone(document, self.now)
         for k in self.lines:
-            meet(document, k)
+            meet(document, k, desk.say)
+        clear_zones(document, document.rows(self.target.ids))
         document.commit()
         return RESTING
 
@@ -245,28 +248,6 @@ def stretch(bent: Deformation, at: NDArray[np.float64]) -> NDArray[np.float64]:
     right = (bent.apply(np.add(at, (step, 0.0))) - here) / step
     down = (bent.apply(np.add(at, (0.0, step))) - here) / step
     return np.asarray(np.abs(right[:, 0] * down[:, 1] - right[:, 1] * down[:, 0]))
-
-
-def _bend_borders(document: Document, areas: tuple[int, ...], bent: Deformation) -> None:
-    """Move the nodes of the areas' borders; those on the page's edge stay."""
-    from stippler.drawing.area_edits import current_map, edit_areas_within
-    from stippler.drawing.planar.moves import move_nodes
-    from stippler.drawing.planar.planar_map import OUTSIDE
-
-    before = current_map(document)
-    edge = {
-        tuple(v) for arc in before.arcs.values() if OUTSIDE in (arc.left, arc.right)
-        for v in arc.path.vertices.tolist()
-    }  # fmt: skip
-    to_mm: dict[tuple[int, int], Point] = {}
-    for k, arc in before.arcs.items():
-        if OUTSIDE in (arc.left, arc.right) or not {arc.left, arc.right} & set(areas):
-            continue
-        nodes = [i for i in arc.path.nodes() if tuple(arc.path.vertices[i].tolist()) not in edge]
-        for i, at in zip(nodes, bent.apply(arc.path.points_mm[nodes]), strict=True):
-            to_mm[k, i] = (float(at[0]), float(at[1]))
-    if to_mm:
-        edit_areas_within(document, lambda areas_before: move_nodes(areas_before, to_mm))
 
 
 def _bend_patterns(document: Document, target: Target, bent: Deformation) -> None:

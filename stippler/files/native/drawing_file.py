@@ -22,10 +22,11 @@ from stippler.drawing.drawing import Drawing
 from stippler.drawing.foreign import Foreign
 from stippler.drawing.reference import Picture
 from stippler.drawing.style import MAX_DOTS
-from stippler.errors import DrawingFileError, StipplerError
+from stippler.errors import DrawingFileError, GeometryError, StipplerError
 from stippler.files.native import arrays, structure
 from stippler.files.native.container import Members, read_container, write_container
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
+from stippler.files.native.page_area import with_page_area
 from stippler.files.native.thumbnail import MEMBER, thumbnail_png
 from stippler.version import VERSION
 
@@ -181,6 +182,10 @@ def drawing_of(
         kind: _read_table(kind, document.get(kind, {}), pictures, strange, place)
         for kind in _TABLES
     }
+    try:
+        tables[records.AREA] = with_page_area(tables[records.AREA], page)
+    except GeometryError as error:
+        raise DrawingFileError(f"has areas that are wrong ({error})", place, _DO) from None
     dots = _read_dots(document.get("dots"), members, used, tables, place)
     drawing = Drawing(
         page,

@@ -67,9 +67,8 @@ def steps_to_bytes(steps: Sequence[Step], n_done: int, drawing: Drawing) -> byte
     head = {"what": _HEAD, "of": state_of(drawing), "n_done": n_done - first}
     known = {drawing.reference.source.digest} if drawing.reference is not None else set()
     pieces = [arrays.pack(head, {})]
-    for step, edit in zip(steps[first:last], edits[first:last], strict=True):
-        if edit is None:  # none is left here
-            continue
+    kept = zip(steps[first:last], edits[first:last], strict=True)
+    for step, edit in ((step, edit) for step, edit in kept if edit is not None):  # all are there
         for digest, picture in edit.pictures.items():
             if digest not in known:
                 known.add(digest)

@@ -183,7 +183,7 @@ def subpaths(text: str, most: int) -> tuple[list[Subpath], bool]:
     for command, v in _commands(text):
         n += 1
         if n > most:
-            return [*out, (pen.pieces, False)], False
+            break
         if command == "Z":
             if pen.pieces:
                 out.append((pen.pieces, True))
@@ -205,7 +205,7 @@ def subpaths(text: str, most: int) -> tuple[list[Subpath], bool]:
     if pen.pieces:
         out.append((pen.pieces, False))
     left = _TOKEN.sub("", text).strip(" \t\r\n,") if n else text.strip()
-    return out, not left
+    return out, n <= most and not left
 
 
 def _draw(pen: _Reader, command: str, v: list[float]) -> None:

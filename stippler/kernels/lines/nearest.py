@@ -31,8 +31,15 @@ def list_segments(segments, reach, x0, y0, cell, columns, rows, start, listed, c
         j1 = min(int((max(ay, by) + r - y0) / cell), rows - 1)
         far = r + 0.7072 * cell
         for j in range(j0, j1 + 1):
-            for k in range(i0, i1 + 1):
-                x, y = x0 + (k + 0.5) * cell, y0 + (j + 0.5) * cell
+            y = y0 + (j + 0.5) * cell
+            t0, t1 = _within_rows(y - far, y + far, ay, by)
+            if t0 > t1:
+                continue
+            xa, xb = ax + t0 * (bx - ax), ax + t1 * (bx - ax)
+            k0 = max(int((min(xa, xb) - far - x0) / cell) - 1, i0)
+            k1 = min(int((max(xa, xb) + far - x0) / cell) + 1, i1)
+            for k in range(k0, k1 + 1):
+                x = x0 + (k + 0.5) * cell
                 if _distance(x, y, ax, ay, bx, by) <= far:
                     c = j * columns + k
                     if counting:
@@ -40,6 +47,15 @@ def list_segments(segments, reach, x0, y0, cell, columns, rows, start, listed, c
                     else:
                         listed[start[c]] = i
                         start[c] += 1
+
+
+@inline
+def _within_rows(low, high, ay, by):
+    """Return from where to where, as shares of a segment, it lies between two heights."""
+    if ay == by:
+        return 0.0, 1.0
+    a, b = (low - ay) / (by - ay), (high - ay) / (by - ay)
+    return max(min(a, b), 0.0), min(max(a, b), 1.0)
 
 
 @inline

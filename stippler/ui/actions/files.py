@@ -96,7 +96,7 @@ def work_commands(parts: Parts) -> Iterator[Command]:
                   tip="in the panel Drawing; dots change with the next Start.")  # fmt: skip
     yield Command("work.scale", "Scale the drawing", lambda: parts.popups.scale.ask(),
                   can=lambda: session.paintable,
-                  tip="to another size or number of dots, its tone kept.")  # fmt: skip
+                  tip="or chosen areas, to another size or number of dots.")  # fmt: skip
     yield from _print_commands(parts)
 
 

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 
 from stippler.drawing.style import THROUGH, parameter_of
 from stippler.editor.commands import SHIFT, Command, Key
-from stippler.editor.tools.border_pieces import BORDER_COMMANDS, LABELS, chosen_pieces, set_policy
+from stippler.editor.tools.border_pieces import (
+    BORDER_COMMANDS,
+    LABELS,
+    chosen_pieces,
+    policies_of,
+    set_policy,
+)
 from stippler.editor.tools.tool import Desk
 from stippler.ui.actions.parts import Parts
 
@@ -45,13 +51,20 @@ def node_commands(parts: Parts) -> Iterator[Command]:
     def has_pieces() -> bool:
         return has_some() and bool(chosen_pieces(tool().held))
 
-    yield from _border_commands(doing, tool, has_pieces)
+    def is_said(policy: str) -> bool:
+        document = parts.session.document
+        if document is None or not has_pieces():
+            return False
+        return policies_of(document, chosen_pieces(tool().held)) == {policy}
+
+    yield from _border_commands(doing, has_pieces, is_said, tool)
 
 
 def _border_commands(
     doing: Callable[[Callable[[Desk], None]], Callable[[], None]],
-    tool: Callable[[], NodeTool],
     can: Callable[[], bool],
+    is_said: Callable[[str], bool],
+    tool: Callable[[], NodeTool],
 ) -> Iterator[Command]:
     """Yield what the pieces of borders between chosen nodes can be to dots."""
     tips = {one.value: one.help for one in parameter_of("border").choices}
@@ -62,4 +75,5 @@ def _border_commands(
             tip = "Dots on both sides of the piece see each other across it."
         act = doing(lambda desk, one=policy: set_policy(desk, tool().held, one))  # type: ignore[misc]
         label = f"Piece of border: {short.lower()}"
-        yield Command(f"nodes.{name}", label, act, (), can=can, short=short, tip=tip)
+        yield Command(f"nodes.{name}", label, act, (), can=can, short=short, tip=tip,
+                      is_on=lambda one=policy: is_said(one))  # type: ignore[misc]  # fmt: skip

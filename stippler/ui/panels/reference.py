@@ -39,9 +39,8 @@ def draw_tones(widgets: Widgets, session: Session, look: Look, commands: Command
         return
     widgets.caption("These change the drawing: dots are made of the picture as it is here.")
     before = session.adjustment
-    if session.reference is not None:
-        _histogram.draw(widgets, session.reference, before)
-    session.adjustment = _draw_adjustment(widgets, before)
+    shaped = _histogram.draw(widgets, session.reference, before)
+    session.adjustment = _draw_adjustment(widgets, shaped)
     if session.adjustment != before:
         look.reference_shown = True  # else nothing would be seen to change
     reference = session.reference

@@ -52,6 +52,10 @@ def draw_tool(
         dots = f"{n_selected:,} dots selected" if n_selected else "No dots selected"
         widgets.caption(tool.chosen_text or dots)
         _draw_commands(widgets, commands, tool.commands)
+    for heading, names in tool.groups:
+        widgets.rule()
+        widgets.heading(heading)
+        _draw_commands(widgets, commands, names)
 
 
 def _draw_parameters(widgets: Widgets, tool: Tool) -> dict[str, Value]:
@@ -210,10 +214,13 @@ def _draw_stroke(widgets: Widgets, brush: Brush, changes: dict[str, Any]) -> Non
 
 
 def _draw_commands(widgets: Widgets, commands: Commands, names: tuple[str, ...]) -> None:
-    width = (imgui.get_content_region_avail().x - widgets.gap) / 2
+    half = (imgui.get_content_region_avail().x - widgets.gap) / 2
     for k, name in enumerate(names):
         command = commands[name]
         if k % 2:
             imgui.same_line(0.0, widgets.gap)
-        if widgets.button(command.short, command.explained, width=width, enabled=command.enabled):
+        is_on = command.is_on is not None and command.is_on()
+        if widgets.button(
+            command.short, command.explained, width=half, primary=is_on, enabled=command.enabled
+        ):
             command.run()

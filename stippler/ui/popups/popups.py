@@ -136,7 +136,7 @@ class Popups:
         """Scales the drawing."""
         from stippler.ui.popups.scale import ScaleDrawing
 
-        return ScaleDrawing(self._session)
+        return ScaleDrawing(self._session, self._toolbox.areas)
 
     @cached_property
     def palette(self) -> Palette:

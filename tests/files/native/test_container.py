@@ -112,7 +112,7 @@ def test_a_name_that_stands_twice_is_refused(tmp_path):
     stream = io.BytesIO(written())
     with zipfile.ZipFile(stream, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
         archive.writestr("document.json", b"{}")
-    with pytest.raises(DrawingFileError, match="twice"):
+    with pytest.raises(DrawingFileError, match=r"lists 'document\.json' twice"):
         read(tmp_path, stream.getvalue())
 
 
@@ -149,7 +149,7 @@ def test_a_bomb_is_refused_by_what_it_declares_or_by_its_bytes(tmp_path):
 def test_no_file_and_a_folder_are_told_apart(tmp_path):
     with pytest.raises(DrawingFileError, match="no such file"):
         read_container(tmp_path / "none.stipple")
-    with pytest.raises(DrawingFileError, match="folder"):
+    with pytest.raises(DrawingFileError, match="is a folder"):
         read_container(tmp_path)
 
 

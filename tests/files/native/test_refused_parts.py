@@ -16,6 +16,7 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.edit import Edit
 from stippler.drawing.log import ENDED, MADE, OPENED, PART, REDONE, STEP, UNDONE, Entry
 from stippler.drawing.reference import Picture
+from stippler.drawing.style import MAX_DOTS
 from stippler.errors import DrawingFileError
 from stippler.files.native import arrays, edit_log, journal, recovery, step_file, structure
 from stippler.files.native.container import MANIFEST, MIME, is_container, read_container
@@ -107,12 +108,18 @@ def test_structure_beyond_its_limit_is_refused():
         (lambda d: d["next_id"].update(dot=2**53 + 1), "is no id"),
         (lambda d: d["next_id"].update(dot=True), "is no id"),
         (lambda d: d.update(pictures=[]), "no list of pictures"),
+        (lambda d: d.pop("dots"), "has no dots"),
+        (lambda d: d["dots"].update(n=MAX_DOTS + 1), "is no number of dots"),
+        (lambda d: d["dots"].update(n=-1), "is no number of dots"),
+        (lambda d: d["dots"].update(n=True), "is no number of dots"),
+        (lambda d: d["dots"]["arrays"].pop("radius_mm"), "radius_mm is missing"),
+        (lambda d: d["dots"]["arrays"].update(id=["i8", [7]]), "id is not what it should be"),
         (lambda d: d.update(pictures={"x": 5}), "says nothing of it"),
         (lambda d: d.update(area=[]), "no table|areas"),
         (lambda d: d["area"].update({"01": d["area"]["0"]}), "is no id"),
         (lambda d: d["area"].update({"-1": d["area"]["0"]}), "is no id"),
         (lambda d: d["area"].update({"9" * 10: d["area"]["0"]}), "is no id"),
-        (lambda d: d["area"].pop("0"), "area is not in the drawing|own area is missing"),
+        (lambda d: d["area"].clear(), "area is not in the drawing|own area is missing"),
         (lambda d: d["area"]["0"].update(style=77), "its style is missing"),
         (lambda d: d["area"]["0"].update(outline_mm="POLYGON ((0"), "outline of an area"),
         (lambda d: d["area"]["0"].update(outline_mm="POINT (1 2)"), "is no polygon"),

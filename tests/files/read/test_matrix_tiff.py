@@ -207,8 +207,8 @@ def cases():
             for bits in (8, 16):
                 name = f"{kind}-{bits}-turned{orientation}"
                 yield Case(name, photometric, bits, orientation=orientation)
-    for bits, form in ((4, UINT), (10, UINT), (12, UINT), (16, UINT), (32, UINT), (16, INT),
-                       (16, FLOAT), (32, FLOAT), (64, FLOAT)):  # fmt: skip
+    for bits, form in ((4, UINT), (10, UINT), (12, UINT), (16, UINT), (24, UINT), (32, UINT),
+                       (16, INT), (16, FLOAT), (32, FLOAT), (64, FLOAT)):  # fmt: skip
         for big in (False, True):
             name = f"motorola-{names[form]}{bits}{'-big' if big else ''}"
             yield Case(name, BLACK_IS_ZERO, bits, form, order=">", big=big)

@@ -1,14 +1,16 @@
 """What readers make of the rarer words of their dialects: transforms, arcs, odd pages of TIFF."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
 import tifffile
 
 from stippler.errors import PictureError, StipplerError
-from stippler.files.read import svg_data
+from stippler.files.read import svg_data, table
 from stippler.files.read.picture import picture_of_bytes
+from stippler.files.read.svg_data import subpaths
 from stippler.files.read.svg_outlines import outlines_of_svg
 from stippler.files.read.table import read_csv
 
@@ -121,3 +123,114 @@ def test_tables_that_are_no_file(tmp_path):
     for path, why in ((tmp_path / "none.csv", "no such file"), (tmp_path, "is a folder")):
         with pytest.raises(StipplerError, match=why):
             read_csv(path)
+
+
+# --- paths at their limits, pages of one side, masks ----------------------------------------------
+
+
+def test_path_data_is_read_up_to_its_limit_and_what_was_drawn_by_then_is_kept():
+    text = "M0 0L1 0L1 1L0 1"
+    whole, done = subpaths(text, 4)
+    assert done
+    ((pieces, closed),) = whole
+    assert (len(pieces), closed) == (3, False)
+    cut, done = subpaths(text, 3)
+    assert not done
+    assert len(cut[-1][0]) == 2
+    for most, n_found in ((2, 1), (3, 1), (4, 1), (5, 2)):  # nothing of no length is left over
+        found, done = subpaths("M0 0L1 0ZM5 5L6 5", most)
+        assert [len(pieces) for pieces, _ in found] == [1] * n_found
+        assert done is (most == 5)
+
+
+def test_subpaths_begin_anew_at_each_move_and_after_each_close():
+    found, done = subpaths("M0 0L1 0M5 5L6 5m1 1l1 0zl0 1", 99)
+    assert done
+    begins = [[float(v) for v in pieces[0][0]] for pieces, _ in found]
+    assert begins == [[0, 0], [5, 5], [7, 6], [7, 6]]
+    assert [closed for _, closed in found] == [False, False, True, False]
+    assert subpaths("ZM1 1L2 2", 9)[0][0][0][0].tolist() == [[1, 1], [2, 2]]
+    assert subpaths("L1 1", 9) == ([], False)
+    assert subpaths("M1 1L2 2!", 9)[1] is False
+
+
+def size_of(attributes):
+    data = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}><rect width="2" height="1"/></svg>'
+    )
+    found = outlines_of_svg(data.encode(), Path("here"))
+    (shape,) = found.shapes
+    points = shape.paths[0].points_mm
+    return found.size_mm, tuple((points.max(axis=0) - points.min(axis=0)).round(4).tolist())
+
+
+PX = 25.4 / 96
+
+
+@pytest.mark.parametrize(
+    ("attributes", "page", "rect"),
+    [
+        ('viewBox="0 0 20 10" width="40mm" height="20mm"', (40, 20), (4, 2)),
+        ('viewBox="0 0 20 10" width="40mm"', (40, 20), (4, 2)),
+        ('viewBox="0 0 20 10" height="20mm"', (40, 20), (4, 2)),
+        ('viewBox="0 0 20 10"', (20 * PX, 10 * PX), (2 * PX, PX)),
+        ('viewBox="0 0 20 10" width="40mm" height="40mm"', (40, 40), (4, 2)),
+        ('viewBox="0 0 20 0" width="40mm" height="40mm"', (40, 40), (2 * PX, PX)),
+        ('viewBox="0 0 20" width="40mm"', None, (2 * PX, PX)),
+        ('viewBox="0 0 20 10" width="40mm" height="40mm" preserveAspectRatio="none"',
+         (40, 40), (4, 4)),
+        ('viewBox="0 0 20 10" width="40mm" height="40mm" preserveAspectRatio="xMinYMin slice"',
+         (40, 40), (8, 4)),
+    ],
+)  # fmt: skip
+def test_a_page_has_the_size_that_is_told_or_follows_from_it(attributes, page, rect):
+    size, sides = size_of(attributes)
+    assert sides == pytest.approx(rect, abs=2e-3)
+    assert size == (page if page is None else pytest.approx(page))
+
+
+def test_a_shape_with_a_mask_is_kept_whole_and_that_is_told():
+    for name in ("clip-path", "mask", "filter"):
+        found = boxes_and_notes(f'<rect width="9" height="9" {name}="url(#a)"/>')
+        assert found == (1, (f"left out: 1 x {name} (the shape is kept whole)",))
+    plain = boxes_and_notes('<rect width="9" height="9" style="fill:red"/>')
+    assert plain == (1, ())
+
+
+def boxes_and_notes(body):
+    data = f'<svg xmlns="http://www.w3.org/2000/svg">{body}</svg>'
+    found = outlines_of_svg(data.encode(), Path("here"))
+    return len(found.shapes), found.notes
+
+
+def test_lines_of_a_single_corner_are_nothing():
+    body = '<polygon points="1,1"/><polyline points="1,1 2"/><polyline points="1,1 2,2 3"/>'
+    assert boxes_and_notes(body)[0] == 1
+    assert boxes_and_notes('<line x2="5" y2="5"/>')[0] == 1
+
+
+def test_a_table_that_may_not_be_read_says_why(tmp_path, monkeypatch):
+    def fails(_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", fails)
+    with pytest.raises(StipplerError, match=r"cannot be read \(Permission denied.*check the file"):
+        read_csv(tmp_path / "one.csv")
+
+
+def test_our_own_tables_with_rows_of_another_length_are_refused_by_line(tmp_path):
+    head = ",".join(table.NAMES)
+    rows = ["1,2,0.5,1,0,0,7,0,0", "3,4,0.5,1,0,0,7,0,0"]
+    path = tmp_path / "one.csv"
+    path.write_text("\n".join([head, *rows]) + "\n")
+    assert len(read_csv(path)) == 2
+    path.write_text("\n".join([head, *(row + ",5" for row in rows)]) + "\n")
+    with pytest.raises(StipplerError, match="line 2"):
+        read_csv(path)
+
+
+def test_ids_in_a_table_count_where_each_stands_once(tmp_path):
+    path = tmp_path / "one.csv"
+    for ids, wanted in (([7, 3], [7, 3]), ([7, 7], [0, 1])):
+        path.write_text("x,y,id\n" + "".join(f"{k},{k},{i}\n" for k, i in enumerate(ids, 1)))
+        assert read_csv(path).id.tolist() == wanted
