@@ -70,14 +70,15 @@ def _put_corner(side: F8, p: int, q: int) -> None:
 def _is_beyond(side: F8, k: int, line: int) -> bool:
     """Whether the first corner of side k lies on or beyond the line of another."""
     c = side[line, 4]
-    return side[line, 2] * side[k, 0] + side[line, 3] * side[k, 1] - c >= -TOLERANCE * c
+    off = side[line, 2] * side[k, 0] + side[line, 3] * side[k, 1] - c
+    return bool(off >= -TOLERANCE * c)
 
 
 @inline
 def _is_same_way(side: F8, p: int, q: int) -> bool:
     a, b, da, db = side[p, 2], side[p, 3], side[q, 2], side[q, 3]
     length = math.sqrt((a * a + b * b) * (da * da + db * db))
-    return a * da + b * db > 0.0 and a * db - b * da <= _PARALLEL * length
+    return bool(a * da + b * db > 0.0 and a * db - b * da <= _PARALLEL * length)
 
 
 @inner
