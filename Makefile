@@ -47,8 +47,9 @@ soak: $(VENV)/ready-dev
 	@$(BIN)/python -m stippler.warm
 	$(BIN)/python -m benchmarks.soak $(MINUTES)
 
-COVERING := tests/drawing tests/files tests/corpus tests/fuzz tests/regressions tests/editor \
-	tests/stippling/test_lines.py tests/stippling/test_patterns.py tests/stippling/test_scale.py
+COVERING := tests/drawing tests/files tests/corpus tests/fuzz tests/regressions tests/editor tests/jobs \
+	tests/analysis $(wildcard tests/stippling/test_*line*.py) $(wildcard tests/stippling/test_*border*.py) \
+	$(wildcard tests/stippling/test_scale*.py) tests/stippling/test_patterns.py
 coverage: $(VENV)/ready-dev
 	@$(PIP) --group coverage
 	@setup/system-libraries test

@@ -1,5 +1,7 @@
 """Steps undone and redone around a journal's beginning, dots that one begins with, pictures."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -141,3 +143,29 @@ def test_structure_that_is_no_document_is_refused(data):
     members = members_of(document().drawing)
     with pytest.raises(DrawingFileError, match="holds no drawing"):
         drawing_of({**members, "document.json": data}, picture_of_bytes, "here")
+
+
+def test_a_document_without_any_area_is_refused():
+    members = members_of(Drawing.blank(Page(40.0, 30.0)))
+    text = re.sub(rb'"area":{"0":{.*?}},', b'"area":{},', members["document.json"])
+    assert text != members["document.json"]
+    with pytest.raises(DrawingFileError, match="own area is missing"):
+        drawing_of({**members, "document.json": text}, picture_of_bytes, "here")
+
+
+def test_another_step_than_the_one_undone_is_not_redone():
+    doc = document()
+    members = members_of(doc.drawing)
+    first = resized(doc, 0.3)
+    other = Document(again_of(members).drawing)
+    second = resized(other, 0.4)
+    entries = [Entry("step", first, n_done=1), Entry(UNDONE, first.inverse(), n_done=0)]
+    again = again_of(members)
+    n, why = replay(
+        again, map(of_entry, [*entries, Entry(REDONE, second, n_done=1)]), picture_of_bytes
+    )
+    assert n == 2
+    assert "another step than the last that was undone" in why
+    again = again_of(members)
+    right = [*entries, Entry(REDONE, first, n_done=1)]
+    assert replay(again, map(of_entry, right), picture_of_bytes) == (3, "")

@@ -248,3 +248,5 @@ def test_what_a_caller_asks_amiss_is_no_fault_of_the_file(tmp_path):
     Image.new("L", (4, 3)).save(path)
     with pytest.raises(ParameterError, match="tone"):
         read_picture(path, tone="louder", width_mm=9.0)
+    with pytest.raises(ParameterError, match="tone"):
+        picture_of_bytes(path.read_bytes(), "one.png", "louder")
