@@ -64,8 +64,9 @@ class Drawing(_Drawing):
         list of Path
             The files written; more than one where a format wants a file a pen.
         """
-        from stippler.export import save
+        from stippler.export import check_output, save
 
+        check_output(path, self.inputs, form, **options)
         _warn_of(preflight.saving_warning(self, Path(path), options.get("dpi")))
         return save(self, Path(path), inputs=self.inputs, form=form, **options)
 
