@@ -66,7 +66,7 @@ class Drawing(_Drawing):
         """
         from stippler.export import check_output, save
 
-        check_output(path, self.inputs, form, **options)
+        check_output(Path(path), self.inputs, form, **options)
         _warn_of(preflight.saving_warning(self, Path(path), options.get("dpi")))
         return save(self, Path(path), inputs=self.inputs, form=form, **options)
 
