@@ -100,16 +100,22 @@ class Cells:
         self._free_of_dot = np.zeros(n)
         self._has_stars = False
         self.n_failed = n  # stars of the step before that did not hold
-        self.rules, self._is_measured = LLOYD, True
+        self.rules, self._is_measured, self._is_met = LLOYD, True, np.zeros(self.n, np.bool_)
 
-    def space_by(self, wanted: Wanted | Sequence[Wanted], radius_mm: Floats | None = None) -> None:
+    def space_by(
+        self,
+        wanted: Wanted | Sequence[Wanted],
+        radius_mm: Floats | None = None,
+        is_met: NDArray[np.bool_] | None = None,
+    ) -> None:
         """Move dots by the rules of even spacing from now on; what is wanted goes by the field.
 
         One thing is wanted of all, or one of each shape. With radii given, by dot, density follows
-        from these and the tone.
+        from these and the tone. The mass of dots that are met counts as what they want.
         """
         n = self.n
         self._sort(self._has_stars)
+        self._is_met = np.zeros(n, np.bool_) if is_met is None else is_met[self.order]
         each = [wanted] if isinstance(wanted, Wanted) else list(wanted)
         tables = [one.table() for one in each]
         rows = np.array([len(table) for table in tables])
@@ -128,7 +134,14 @@ class Cells:
         if self._is_measured or self.rules.rule[LEAST] >= 1.0:
             return
         self._relax(np.arange(self.n, dtype=np.int32), False, self._new_moves())
-        self._fit_wants_to_number()
+        self._hand_over_wants()
+
+    def _hand_over_wants(self) -> None:
+        """Let the next step go by what this one has found."""
+        if not self._is_measured:
+            self._fit_wants_to_number()
+        if len(self.rules.found):
+            self.rules.found[self._is_met, MASS] = 1.0
         self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
 
     def _fit_wants_to_number(self) -> None:
@@ -174,9 +187,7 @@ class Cells:
         if redirect is not None:
             self._redirect(new, redirect)
         self.xs, self.ys = new.x, new.y
-        if not self._is_measured:
-            self._fit_wants_to_number()
-        self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
+        self._hand_over_wants()
         if self.n:
             self._slack += float(new.gone.max())
             self._keep = float(new.gone.mean()) < KEEP_BELOW * self.spacing
@@ -394,7 +405,7 @@ class Cells:
         crowd, tree_of_cell, node = self._split_crowds(cell_start, order)
         if cancel is not None and cancel():
             return False
-        names = ["fixed", "compartment_of_dot", "order"]
+        names = ["fixed", "compartment_of_dot", "order", "_is_met"]
         sorted_rows: dict[str, Any] = {
             "_cell_start": cell_start, "_crowd": crowd, "_tree_of_cell": tree_of_cell,
             "_node": node,

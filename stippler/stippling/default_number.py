@@ -18,11 +18,12 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.tone import LEAST_PRINTED_MM
 
-_RADIUS_MM, _ON_MM2 = 0.27, 13_000.0  # mean radius, on a page 130 mm wide
+_RADIUS_MM, _ON_MM2 = 0.20, 13_000.0  # mean radius, on a page 130 mm wide
 _MEAN_TO_LEAST = 1.35  # radii of a drawing whose dots differ by 1:2
-_USUAL_LOSS = 0.065  # what dots of that size leave out of a usual photograph
-_FEWEST, _MOST = 0.7, 2.0  # times the number without regard to detail
+_USUAL_LOSS = 0.06  # what dots of that size leave out of a usual photograph
+_FEWEST, _MOST = 0.75, 1.5  # times the number without regard to detail
 _LEAST, _LIMIT = 200, 500_000
+_LEAST_CELL_PX = 2.0  # pictures of few pixels are no plain ones
 _FINE = 4  # blocks a side of a dot's cell; what is finer is grain
 
 
@@ -66,10 +67,12 @@ def _loss(darkness: NDArray[np.float32], cell_px: float) -> float:
     """Return what is left out of a picture by cells of so many pixels a side, for its ink."""
     block = max(1, int(cell_px / _FINE))
     fine = _averaged(darkness, block)
-    side = max(1, round(cell_px / block))
-    coarse = _averaged(fine, side)
+    side = max(cell_px / block, _LEAST_CELL_PX)
+    low = int(side)
+    coarse = [_variance(_averaged(fine, k)) for k in (low, low + 1)]
+    left = coarse[0] + (side - low) * (coarse[1] - coarse[0])
     grain = _variance(darkness) - _variance(fine)  # if it is white, blocks have so much less of it
-    lost = _variance(fine) - _variance(coarse) - grain / block**2
+    lost = _variance(fine) - left - grain / block**2
     return math.sqrt(max(lost, 0.0) / max(float(fine.mean(dtype=np.float64)), 1e-12))
 
 

@@ -84,6 +84,9 @@ class Relaxation:
         How dense and how large "even" has dots to be by levels of the density.
     radius_mm : (n,) array_like, optional
         The dots' own sizes, by which "even" spaces them then.
+    is_met : (n,) array_like of bool, optional
+        Dots whose cells say too little of what they want, as beside an edge that others lay beyond:
+        "even" takes it as met.
 
     Raises
     ------
@@ -109,6 +112,7 @@ class Relaxation:
         method: str = "lloyd",
         wanted: Wanted | Sequence[Wanted] | None = None,
         radius_mm: ArrayLike | None = None,
+        is_met: ArrayLike | None = None,
     ) -> None:
         if method not in RELAXATIONS:
             raise ParameterError(
@@ -137,7 +141,7 @@ class Relaxation:
             if wanted is None:
                 wanted = _in_proportion(density, int(self._parts.shape_of[-1]) + 1)
             own = None if radius_mm is None else _checked(radius_mm, n, np.float64, "radius", 0)
-            self._cells.space_by(wanted, own)
+            self._cells.space_by(wanted, own, _checked(is_met, n, np.bool_, "is_met", False))
 
     @property
     def points(self) -> NDArray[np.float64]:

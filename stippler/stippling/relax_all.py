@@ -209,14 +209,15 @@ def _keeping_tone(draft: StandingDraft, total: int) -> Iterator[StepReport]:
     before = draft.points
     sheet = _Sheet(draft, reference)
     on_line = draft.on_line
-    still = (draft.fixed | sheet.beside(before)) & ~on_line
+    beside = sheet.beside(before)
+    still = (draft.fixed | beside) & ~on_line
     start = draft.without_long_waves(still | on_line, sheet)
     field = DensityField(sheet.raster.darkness, sheet.raster.pixel_mm)
 
     def engine_for(still: NDArray[np.bool_]) -> Relaxation:
         return Relaxation(
             start, draft.parts, still, standing.part_of_dot, field,
-            method="even", wanted=sheet.wanted, radius_mm=sheet.sizes,
+            method="even", wanted=sheet.wanted, radius_mm=sheet.sizes, is_met=beside,
         )  # fmt: skip
 
     engine = engine_for(still)

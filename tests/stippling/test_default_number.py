@@ -6,6 +6,8 @@ import pytest
 import stippler
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.files.read.picture import read_picture
+from stippler.resources import assets
 from stippler.stippling.default_number import default_number, with_number
 
 
@@ -45,6 +47,22 @@ def test_grain_finer_than_any_dot_is_no_detail():
     grainy = np.clip(smooth + rng.normal(0.0, 0.1, smooth.shape), 0, 1).astype(np.float32)
     ratio = default_number(Reference(grainy, 130.0)) / default_number(Reference(smooth, 130.0))
     assert 0.9 < ratio < 1.2
+
+
+def test_a_picture_of_few_pixels_gets_no_fewer_dots_on_a_larger_page():
+    rng = np.random.default_rng(2)
+    few = np.clip(waves(7.0, 200) + rng.normal(0.0, 0.05, (200, 200)), 0, 1).astype(np.float32)
+    numbers = [default_number(Reference(few, w)) for w in (40, 60, 80, 105, 130, 210, 420, 594)]
+    assert numbers == sorted(numbers)
+
+
+@pytest.mark.parametrize("name", ["ammonite.png", "honey-bee.jpg", "sandstone.jpg"])
+@pytest.mark.parametrize(("width", "least", "most"), [(105, 0.28, 0.38), (594, 0.7, 1.1)])
+def test_samples_have_dots_of_a_pen_on_a_postcard_and_of_a_marker_on_a_poster(
+    name, width, least, most
+):
+    picture = read_picture(assets() / "samples" / name, tone="illustration", width_mm=width)
+    assert least <= 2.0 * radius_of(picture) <= most
 
 
 def test_white_margins_change_no_dot_s_size_much():
