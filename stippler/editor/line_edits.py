@@ -157,10 +157,9 @@ def _line_up(document: Document, k: int, line: Line) -> int:
 
 def tone_of(document: Document) -> Callable[[Points], Points] | None:
     """Return how dense dots are to lie at places, by the reference; None where there is none."""
-    reference = document.drawing.reference
-    if reference is None:
-        return None
-    return lambda points: 0.05 + reference.at(points).astype(np.float64)
+    from stippler.stippling.lines import tone_along
+
+    return tone_along(document.drawing.reference)
 
 
 def spread_held(document: Document) -> int:

@@ -16,6 +16,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from stippler.drawing.line import Line
 from stippler.drawing.line_index import LineIndex
 from stippler.drawing.planar.path import Path
+from stippler.drawing.reference import Reference
 from stippler.errors import GeometryError, ParameterError
 
 Points: TypeAlias = NDArray[np.float64]
@@ -24,6 +25,7 @@ Tone: TypeAlias = Callable[[Points], Points]
 """From places to how many dots they want, relatively."""
 
 _SAMPLES = 8  # of the tone, in a dot's part of a line
+_FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 MOST_ROW = 1_000_000
 
 
@@ -170,11 +172,23 @@ def _even(m: Points, still: NDArray[np.bool_], whole: float, closed: bool) -> Po
     return np.interp(rank, xp, fp)
 
 
+def tone_along(reference: Reference | None) -> Tone | None:
+    """Return how dense dots are to lie along lines by a picture: spaced like those around them.
+
+    As many as have the darkness in the plane: the root of it along a line. None without a picture.
+    """
+    if reference is None:
+        return None
+    return lambda places: np.sqrt(_FAINTEST + reference.at(places).astype(np.float64))
+
+
 def crossings(lines: Sequence[Line]) -> list[tuple[int, float, int, float]]:
     """Return where lines cross: (line, arc length, other line, arc length), each pair once.
 
     Where a line crosses itself it is its own other.
     """
+    if not lines:
+        return []
     shapes = np.array([shapely.linestrings(line.path.points_mm) for line in lines])
     a, b = shapely.STRtree(shapes).query(shapes, predicate="crosses")
     once = np.flatnonzero(a < b)

@@ -17,9 +17,11 @@ from scipy.ndimage import median_filter
 from scipy.spatial import KDTree
 
 from stippler.drawing.reference import Reference
+from stippler.drawing.run import Holding
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
 from stippler.stippling.ground import brought_into
+from stippler.stippling.lines import tone_along
 from stippler.stippling.on_lines import OnLines
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
@@ -37,7 +39,6 @@ _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
 _WHOLE = 1e-6  # of the page
 _INSET_MM = 1e-6  # how far within the border a dot lies that was brought back
-_FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 _BY_CELLS = ("lloyd", "even")  # methods whose steps others may redirect
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
 
@@ -76,10 +77,7 @@ class StandingDraft:
     @property
     def tone(self) -> Callable[[Floats], Floats] | None:
         """How dense dots are to lie along lines."""
-        reference = self.task.reference
-        if reference is None or not self.task.style.weighted:
-            return None
-        return lambda places: _FAINTEST + reference.at(places).astype(np.float64)
+        return tone_along(self.task.reference) if self.task.style.weighted else None
 
     @property
     def n_steps(self) -> int:
@@ -133,21 +131,20 @@ class StandingDraft:
         """Return a snapshot after a step."""
         points = _frozen(self.come_home()) if watched else np.empty((0, 2))
         sizes = self.radius_mm if watched else np.empty(0, np.float32)
-        line, along = self._lines_of_dots() if watched else (None, None)
+        holding = self._holding() if watched else None
         return Progress(step.stage, step.done, step.total, points, _frozen(sizes),
-                        step.movement_mm, None, line, along)  # fmt: skip
+                        step.movement_mm, None, holding)  # fmt: skip
 
     def finished(self) -> Progress:
         """Return the last snapshot."""
         points, sizes = _frozen(self.come_home()), _frozen(self.radius_mm)
-        line, along = self._lines_of_dots()
-        return Progress(DONE, 1, 1, points, sizes, line_of_dot=line, along_mm=along)
+        return Progress(DONE, 1, 1, points, sizes, holding=self._holding())
 
-    def _lines_of_dots(self) -> tuple[NDArray[np.int32] | None, Floats | None]:
-        if self.on_lines is None:
-            return None, None
+    def _holding(self) -> Holding | None:
+        if self.on_lines is None or self.task.lines is None:
+            return None
         self.on_lines.take_back_refused(self.points)
-        return _frozen(self.on_lines.line.astype(np.int32)), _frozen(self.on_lines.along)
+        return self.task.lines.holding(self.on_lines.line, self.on_lines.along)
 
 
 def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
