@@ -234,3 +234,18 @@ def test_an_island_is_not_reshaped_to_a_point(page):
     point = Path(areas.arcs[k].path.vertices[:1].copy())
     with pytest.raises(GeometryError, match="would lose its length"):
         moves.reshape(areas, {k: point})
+
+
+@pytest.mark.parametrize("length", [0.05, 3.0])
+def test_short_handles_are_as_smooth_as_long_ones_and_turn_each_other(length):
+    node, to = np.array([20.0, 3.0]), np.array([0.8, -0.6]) * length
+    path = path_of_cubics(
+        [np.array([(0.0, 0.0), (4.0, 9.0), node - to, node]),
+         np.array([node, node + 2 * to, (33.0, 8.0), (40.0, 10.0)])]
+    )  # fmt: skip
+    at = path.nodes()[1]
+    assert nodes.is_smooth(path, at)
+    turned = nodes.move_handle(path, at, "in", (20.0, 3.0 + length / 2))
+    handles = nodes.handles_at(turned, turned.nodes()[1])
+    assert handles["in"] == pytest.approx((20.0, 3.0 + length / 2), abs=1e-6)
+    assert handles["out"] == pytest.approx((20.0, 3.0 - 2 * length), abs=1e-6)

@@ -13,7 +13,7 @@ from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import OutputError, ParameterError
 from stippler.files.checks import SHEET_STEPS, Process, check, gain_of
 from stippler.files.presses import Press
-from stippler.files.write import course, dxf, eps, estimate, pen_paths, plate, raster, tiff
+from stippler.files.write import course, dxf, eps, estimate, pen_paths, plate, raster, svg, tiff
 from stippler.files.write.formats import FORMATS, TIFF
 from stippler.files.write.lettering import text_lines
 from stippler.files.write.names import one_line, plain, unique
@@ -255,7 +255,7 @@ def test_paths_are_ordered_by_where_they_are_and_turned_to_where_the_pen_is():
 def test_a_way_of_the_pen_is_drawn_pixel_by_pixel_and_what_is_far_away_is_not_tried():
     xy = np.array([(0.0, 0.0), (9.0, 0.0), (9.0, 6.0), (500.0, 6.0), (500.0, 9.0), (-7.5, 3.0)])
     at_s = np.arange(6.0)
-    points, times = course._samples(xy, at_s, np.array([False, *[True] * 5]), (10, 10))
+    points, times = course._samples(xy, at_s, np.array([False, *[True] * 5]), (10, 30))
     assert np.all(np.diff(times[times <= 3]) >= 0)
     first = (times > 0) & (times <= 1)
     assert points[first][-1].tolist() == [9.0, 0.0]
@@ -341,3 +341,24 @@ def test_rows_of_a_patch_are_moved_by_half_a_step_to_the_right():
 
 def test_a_press_loses_nothing_unless_it_says_so():
     assert Press("newspaper", 0.02).least_dot_mm == 0.0
+
+
+@pytest.mark.parametrize(
+    "roughness", [0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+)
+def test_every_dot_is_drawn_once_in_an_svg_however_rough(roughness):
+    dots = some(5)
+    dots.roughness[:] = roughness
+    for edge, _ in svg.SEGMENTS:
+        dots.roughness[0] = max(min(edge, 1.0), 0.0)
+        text = b"".join(svg.chunks(sheet(Layer("dots", dots)), {"paper": False})).decode()
+        n = text.count("<circle") + sum(d.count("M") for d in re.findall(r' d="([^"]*)"', text))
+        assert n == 5
+
+
+def test_a_scaled_sheet_begins_where_it_began():
+    found = sheet().scaled(2.5)
+    assert (found.width_mm, found.height_mm) == (100.0, 50.0)
+    dots = found.layers[0].dots
+    assert dots.position_mm == pytest.approx(some().position_mm * 2.5)
+    assert dots.radius_mm == pytest.approx(some().radius_mm * 2.5)
