@@ -19,6 +19,8 @@ from stippler.drawing.planar.path import (
     with_handles,
 )
 from stippler.drawing.planar.planar_map import PAGE, Arc, PlanarMap
+from stippler.drawing.planar.policies import pieces_of as policies_of
+from stippler.drawing.planar.policies import said, with_policy
 from stippler.errors import GeometryError
 from tests.drawing.test_planar_map import box, node_at, size
 
@@ -275,3 +277,25 @@ def test_a_curve_with_uneven_times_run_back_has_them_from_the_other_end():
     assert back.at == pytest.approx((0.0, 0.1, 0.7, 0.9, 1.0))
     assert back.handles_mm == (tuple(CURVE[2]), tuple(CURVE[1]))
     assert path.reversed().reversed().curves[0].at == pytest.approx(at)
+
+
+def test_pieces_of_a_border_are_told_from_end_to_end():
+    way = Path.polyline([(k, k % 2) for k in range(10)])
+    for policies, wanted in (
+        ((), ((0, 9, ""),)),
+        (((0, 9, "wall"),), ((0, 9, "wall"),)),
+        (((2, 4, "wall"), (4, 5, "through")), ((0, 2, ""), (2, 4, "wall"), (4, 5, "through"),
+                                               (5, 9, ""))),
+        (((0, 3, "wall"), (6, 9, "bleed")), ((0, 3, "wall"), (3, 6, ""), (6, 9, "bleed"))),
+    ):  # fmt: skip
+        arc = Arc(way, 1, 2, policies)
+        assert policies_of(arc) == wanted
+        told = [policy for first, last, policy in wanted for _ in range(last - first)]
+        assert said(arc) == told
+
+
+def test_what_is_said_of_a_border_that_is_not_there_is_refused(two):
+    for act in (lambda: with_policy(two, {999: ()}),
+                lambda: moves.follow(two, {999: box(1, 1, 2, 2)})):  # fmt: skip
+        with pytest.raises(GeometryError, match=r"border 999.*is not there"):
+            act()
