@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
@@ -352,6 +351,8 @@ def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> Pa
 
 def without_dots_at(density: NDArray[np.float32], points: Floats) -> NDArray[np.float32]:
     """Return dots per square pixel without the room of dots that are there, in its pixels."""
+    from scipy.ndimage import distance_transform_edt  # a quarter of a second to import
+
     h, w = density.shape
     x, y = points.astype(np.intp).T
     free = np.ones(density.shape, np.bool_)

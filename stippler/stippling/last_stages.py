@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
-from scipy.spatial import KDTree
 
 from stippler.kernels.tone.union_share import shares_of_union
 from stippler.stippling.draft import Draft, Floats
@@ -151,6 +150,8 @@ def _clear_of_neighbours(draft: Draft, points: Floats) -> Floats:
     beyond = draft.task.neighbours_mm
     if beyond is None or not len(beyond):
         return points
+    from scipy.spatial import KDTree  # which takes a while to import
+
     pixel = draft.raster.pixel_mm
     others = (beyond - np.array(draft.ground.origin_mm)) / pixel
     tree = KDTree(others)
