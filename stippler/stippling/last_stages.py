@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
-from scipy.spatial import KDTree
 
 from stippler.kernels.tone.union_share import shares_of_union
 from stippler.stippling.draft import Draft, Floats
@@ -57,10 +56,12 @@ def part(draft: Draft, watched: bool) -> Iterator[Step]:
 def rim(draft: Draft, watched: bool) -> Iterator[Step]:
     """Even out the ink along edges that bleed: the page's, or an area's."""
     for k, give in enumerate(_GIVES):
-        draft.points, beside = draft.ground.rim_evened(draft.points, give)
+        evened = draft.ground.rim_evened(draft.points, give)
         yield _rim_step(k + 0.5)
-        within = draft.ground.within(draft.points)
-        draft.points = part_close(draft.points, draft.raster, beside, within)
+        draft.points = points = evened.points
+        some = slice(None) if evened.around is None else np.flatnonzero(evened.around)
+        within = draft.ground.within(points[some])
+        points[some] = part_close(points[some], draft.raster, evened.beside[some], within)
         yield _rim_step(k + 1.0)
 
 
@@ -149,6 +150,8 @@ def _clear_of_neighbours(draft: Draft, points: Floats) -> Floats:
     beyond = draft.task.neighbours_mm
     if beyond is None or not len(beyond):
         return points
+    from scipy.spatial import KDTree  # which takes a while to import
+
     pixel = draft.raster.pixel_mm
     others = (beyond - np.array(draft.ground.origin_mm)) / pixel
     tree = KDTree(others)

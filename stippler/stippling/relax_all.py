@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
-from scipy.spatial import KDTree
 
 from stippler.drawing.reference import Reference
 from stippler.drawing.run import Holding
@@ -264,6 +262,8 @@ def _around_restless(
     before_mm: NDArray[np.float64], after_mm: NDArray[np.float64], free: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """Tell which free dots are not at rest, or lie around such: the others need not move."""
+    from scipy.spatial import KDTree  # which takes a while to import
+
     tree = KDTree(before_mm)
     near = np.asarray(tree.query(before_mm, k=min(7, len(before_mm)))[0])
     spacing = near[:, 1:].mean(axis=1) if near.ndim == 2 else np.ones(1)
@@ -343,6 +343,8 @@ class _Sheet:
         self, position_mm: NDArray[np.float64], sizes: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the sizes that dots usually have at levels of darkness."""
+        from scipy.ndimage import median_filter  # a quarter of a second to import
+
         levels = np.linspace(0.0, 1.0, _LEVELS)
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / self.raster.pixel_mm
         under = self.raster.darkness_under(inside)
