@@ -1,6 +1,7 @@
 """Make the pictures of `docs/areas.md`: the window with areas, the paper's Fig. 2, and borders.
 
-``python docs/make_areas.py [--only window|eye|borders|pieces|row]``; without a display, some minutes.
+``python docs/make_areas.py [--only window|eye|borders|pieces|row]``; without a display,
+some minutes.
 
 `docs/areas-eye.png` is what Fig. 2 of Deussen et al. (2000) shows: the eye and its surroundings
 relaxed apart, so that the border between them is enhanced; left as one area, right as two.
