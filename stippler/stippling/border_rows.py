@@ -50,4 +50,4 @@ def _have_two_next(points: Floats, within: Floats) -> NDArray[np.bool_]:
     if len(points) < 3:
         return np.zeros(len(points), np.bool_)
     away, _ = cKDTree(points).query(points, k=3)
-    return np.asarray(away[:, 2] <= within)
+    return np.asarray(np.asarray(away)[:, 2] <= within)
