@@ -260,6 +260,10 @@ def test_short_handles_are_as_smooth_as_long_ones_and_turn_each_other(length):
         [node, node + 2 * to + (0.0, 0.1 * length), (33.0, 8.0), (40.0, 10.0)]
     )])  # fmt: skip
     assert not nodes.is_smooth(bent, at)
+    cusp = path_of_cubics([pieces_of(path)[0], np.array(
+        [node, node - 2 * to, (33.0, 8.0), (40.0, 10.0)]
+    )])  # fmt: skip
+    assert not nodes.is_smooth(cusp, at)
     turned = nodes.move_handle(path, at, "in", (20.0, 3.0 + length / 2))
     handles = nodes.handles_at(turned, turned.nodes()[1])
     assert handles["in"] == pytest.approx((20.0, 3.0 + length / 2), abs=1e-6)

@@ -182,3 +182,16 @@ def test_steps_of_a_journal_are_undone_past_its_beginning_and_redone(begun_later
     assert replay(again, [make() for make in made], picture_of_bytes) == (len(made), "")
     assert members_of(again.drawing) == members_of(doc.drawing)
     assert (again.history.n_done, len(again.history.steps)) == (1, 1)
+
+
+def test_steps_undone_past_a_journals_beginning_leave_none_in_effect(begun_later):
+    doc, members, _ = begun_later
+    made = []
+    doc.follow(EditLog(made.append, doc).take)
+    resized(doc, 0.6)
+    assert doc.undo()
+    assert doc.undo()
+    again = again_of(members)
+    assert replay(again, [make() for make in made], picture_of_bytes) == (len(made), "")
+    assert members_of(again.drawing) == members_of(doc.drawing)
+    assert (again.history.n_done, len(again.history.steps)) == (0, 1)
