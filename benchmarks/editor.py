@@ -111,7 +111,7 @@ def _first_frame(env: dict[str, str], picture: Path, repeats: int) -> Figure:
         ).stdout
         times.append(float(shown) - began)
     return Figure(
-        "editor, first frame", statistics.median(times[1:]), "s", 1.5, note="Xvfb, software GL"
+        "editor, first frame", statistics.median(times[1:]), "s", 0.6, 0.4, note="Xvfb, software GL"
     )
 
 

@@ -31,7 +31,7 @@ def figures(quick: bool = False) -> list[Figure]:
         wall_s, made_s = time.perf_counter() - began, _cpu_s() - before
         loads = [_loaded_s(env) for _ in range(3 if quick else 7)]
     return [
-        Figure("all kernels, cold compile, CPU time", made_s, "s", 15.0),
+        Figure("all kernels, cold compile, CPU time", made_s, "s", 12.0, 8.0),
         Figure("all kernels, cold compile, wall time", wall_s, "s"),
         Figure("relaxation's kernels, loaded from the store, CPU time", min(loads), "s", 0.3),
     ]

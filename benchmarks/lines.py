@@ -13,15 +13,23 @@ from benchmarks.areas import best_ms, curves
 from benchmarks.figures import Figure
 from benchmarks.quality import SPHERE, read_darkness
 from benchmarks.scorer import measure
+from stippler.drawing.area_edits import edit_areas
 from stippler.drawing.deformation import Cage, Deformation
+from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.line import ADHERE, DISTANCE, Line
 from stippler.drawing.line_index import adhering, keeping_distance
 from stippler.drawing.pattern import Pattern
+from stippler.drawing.planar import edits
 from stippler.drawing.planar.path import Path
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.editor.area_choice import AreaChoice
+from stippler.editor.events import LEFT, Moved, Pressed
+from stippler.editor.tools.selection import Selection
+from stippler.editor.tools.tool import Desk
+from stippler.editor.tools.warp_tool import WarpTool
 from stippler.stippling.initial_points import random_in
 from stippler.stippling.lines import adhere, spread
 from stippler.stippling.on_lines import OnLines
@@ -54,7 +62,38 @@ def _bending(repeats: int) -> list[Figure]:
     return [
         Figure("cage over 5,120 polygons", best_ms(pattern.rings_mm, repeats), "ms", 16),
         Figure("cage over 200k dots", best_ms(lambda: bent.apply(dots), repeats), "ms", 8),
+        _warping(dots, repeats),
     ]
+
+
+def _warping(dots: NDArray[np.float64], repeats: int) -> Figure:
+    """Drag a point of a cage over all dots and the borders of 12 areas, as the window does."""
+    drawing = Drawing.blank(Page(*PAGE))
+    drawing.dots = Dots.round(dots, 0.1)
+    document, turn = Document(drawing), np.linspace(0.0, 2 * np.pi, 150)[:-1]
+    for k in range(12):
+        middle = np.array([29 + 46 * (k % 4), 25 + 47 * (k // 4)])
+        ring = Path.polyline(
+            middle + 20 * np.column_stack([np.cos(turn), np.sin(turn)]), closed=True
+        )
+        edit_areas(document, "Add", lambda areas, ring=ring: edits.add(areas, ring, edits.IS_CUT))  # type: ignore[misc]
+    desk = Desk(document, Selection(), lambda x, y: (x, y), 4.0, lambda: 1, lambda *_: None,
+                AreaChoice())  # fmt: skip
+    tool = WarpTool()
+    tool.set("what", "all")
+    held = tool.begin(Pressed(LEFT, PAGE[0] / 3, PAGE[1] / 3), desk)
+    assert held is not None
+    places = iter(np.linspace(1.0, 9.0, repeats + 2).tolist())
+
+    def update() -> None:
+        by = next(places)
+        held.take(Moved(PAGE[0] / 3 + by, PAGE[1] / 3 + by / 2), desk)
+        assert held.overlay.has_borders
+
+    update()
+    found = best_ms(update, repeats)
+    held.cancel(desk)
+    return Figure("warp of 200k dots and 12 areas, an update", found, "ms", 8)
 
 
 def _lines(repeats: int) -> list[Figure]:

@@ -16,8 +16,10 @@ import numpy as np
 from PIL import Image
 
 from benchmarks.figures import Figure
+from stippler.resources import assets
 
 _PLAIN = ("--tone", "linear", "--spacing", "lloyd")  # what versions can be compared by
+_AMMONITE = assets() / "samples" / "ammonite.png"
 _RUN = [sys.executable, "-m", "stippler"]
 
 
@@ -32,19 +34,26 @@ def figures(quick: bool = False) -> list[Figure]:
         def render(*options: str) -> float:
             return _median_s([*_RUN, "render", str(picture), "-o", str(out), *options], repeats)
 
+        def ammonite(n_dots: str) -> float:
+            return _median_s([*_RUN, "render", str(_AMMONITE), "-o", str(out), "--dots", n_dots],
+                             repeats)  # fmt: skip
+
         results = [
+            Figure("10,000 dots of the ammonite, to SVG", ammonite("10000"), "s", 0.4, 0.3),
+            Figure("60,000 dots of the ammonite, to SVG", ammonite("60000"), "s", 0.65, 0.5),
             Figure("60,000 dots, 20 iterations, to SVG", render("--dots", "60000"), "s", 3.0),
             Figure("10,000 dots, 20 iterations, to SVG", render("--dots", "10000"), "s", 1.2),
             Figure("60,000 dots, Lloyd, linear", render("--dots", "60000", *_PLAIN), "s"),
             Figure("20,000 dots, Lloyd, linear", render("--dots", "20000", *_PLAIN), "s"),
             Figure("stippler --help", _median_s([*_RUN, "--help"], repeats), "s", 0.4),
+            Figure("stippler info", _median_s([*_RUN, "info"], repeats), "s"),
         ]
         if not quick:
             many = ("--dots", "1000000", "--iterations", "5")
             seconds, gigabytes = _measure([*_RUN, "render", str(picture), "-o", str(out), *many])
             results += [
-                Figure("1,000,000 dots, 5 iterations, to SVG", seconds, "s"),
-                Figure("1,000,000 dots, 5 iterations, peak memory", gigabytes, "GB"),
+                Figure("1,000,000 dots, 5 iterations, to SVG", seconds, "s", 5.0, 4.0),
+                Figure("1,000,000 dots, 5 iterations, peak memory", gigabytes, "GB", 0.7, 0.5),
             ]
             big = Path(folder) / "big.jpg"
             # enlarged, for a child's peak memory counts that of the process it was forked from

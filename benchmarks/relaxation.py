@@ -39,7 +39,7 @@ def figures(quick: bool = False) -> list[Figure]:
     """Measure everything; `quick` leaves out what takes long."""
     repeats = 5 if quick else 15
     found = _square(repeats) + _shapes(repeats) + _weighted(repeats) + _uneven(repeats)
-    found += _sizes(quick) + _brush(repeats) + _run_from_halftone(repeats)
+    found += _ring() + _sizes(quick) + _brush(repeats) + _run_from_halftone(repeats)
     found += _beside_a_ticking_thread(quick)
     return found
 
@@ -191,6 +191,19 @@ def _uneven(repeats: int) -> list[Figure]:
         for name, p, promised in (("density gradient of 50:1", gradient, (1.2, 1.1)),
                                   ("40 tight clusters", clusters, (2.0, 1.3)))
     ]  # fmt: skip
+
+
+def _ring() -> list[Figure]:
+    """Time steps of a ring, all of whose cells but one are long and thin."""
+    a = np.arange(100_000) * 2 * np.pi / 100_000
+    xy = np.vstack([[[0.0, 0.0]], np.c_[np.cos(a), np.sin(a)]])
+    engine = Relaxation(xy, box(-1.25, -1.25, 1.25, 1.25))
+    times = [least_s(engine.step, 1, warm=0) for _ in range(3)]
+    name = "100k in a ring about one more dot"
+    return [
+        Figure(f"{name}, first step", times[0], "s", 1.0, note="all dots on one circle"),
+        Figure(f"{name}, third step", times[2], "s", 1.0),
+    ]
 
 
 def _sizes(quick: bool) -> list[Figure]:

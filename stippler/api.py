@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from os import PathLike
@@ -14,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from stippler.drawing.drawing import Drawing as _Drawing
 from stippler.drawing.records import STYLE
 from stippler.drawing.reference import Reference
-from stippler.drawing.style import Style
+from stippler.drawing.style import DEFAULT_DOTS, Style
 from stippler.drawing.style_presets import preset
-from stippler.errors import ParameterError
+from stippler.errors import ParameterError, StipplerWarning
+from stippler.jobs import preflight
 from stippler.keywords import with_keywords
 from stippler.stippling.stipple import Progress, notes_on, stages
 from stippler.units import DEFAULT_WIDTH_MM
@@ -62,8 +64,10 @@ class Drawing(_Drawing):
         list of Path
             The files written; more than one where a format wants a file a pen.
         """
-        from stippler.export import save
+        from stippler.export import check_output, save
 
+        check_output(Path(path), self.inputs, form, **options)
+        _warn_of(preflight.saving_warning(self, Path(path), options.get("dpi")))
         return save(self, Path(path), inputs=self.inputs, form=form, **options)
 
     def _repr_svg_(self) -> str:
@@ -119,7 +123,10 @@ def stipple(
     """
     if dots is not None:
         keywords["dots"] = dots
-    return draw(image, Style.of(_style(style), **keywords), tone=tone, width_mm=width)
+    made = Style.of(_style(style), **keywords)
+    n_dots = made.n_dots or DEFAULT_DOTS
+    _warn_of(preflight.warning("stipple", n_dots, _n_pixels(image)))
+    return draw(image, made, tone=tone, width_mm=width)
 
 
 def draw(
@@ -191,6 +198,8 @@ def process(
     ids = [area_id(made, one) for one in wanted]
     if style is not None or keywords:
         _restyle(made, ids, style, keywords)
+    styles = [made.style_of(k) for k in ids]
+    _warn_of(preflight.processing_warning(made, styles))
     document = Document(made)
     document.begin("Areas")
     document.own_by_place(np.arange(len(document.dots)))
@@ -292,6 +301,7 @@ def pulse_density(
     """
     from stippler.stippling.stipple import pulse_density as halftone
 
+    _warn_of(preflight.warning("stipple", dots, _n_pixels(image)))
     inside = None if area is None else _polygon(area)
     return halftone(
         _darkness(image, tone), dots=dots, growth=growth, start=start, seed=seed, area=inside
@@ -318,6 +328,7 @@ def fill(
     """
     from stippler.stippling.initial_points import fill_area
 
+    _warn_of(preflight.warning("fill", n))
     return fill_area(_polygon(area), n, arrangement, seed)
 
 
@@ -336,6 +347,7 @@ def relax(
     """Move points to the centroids of their cells; see `stippler.stippling.relax.relax`."""
     from stippler.stippling.relax import relax as run
 
+    _warn_of(preflight.warning("relax", np.size(points) // 2))
     return run(
         points,
         polygon,
@@ -347,6 +359,23 @@ def relax(
         tolerance_mm=tolerance_mm,
         over_relaxation=over_relaxation,
     )
+
+
+def _warn_of(text: str) -> None:
+    """Tell whoever called the function that calls this; nothing, if there is nothing to tell."""
+    if text:
+        warnings.warn(text, StipplerWarning, stacklevel=3)
+
+
+def _n_pixels(image: Any) -> int:
+    """Return how many pixels a picture has, as far as that can be told without reading it."""
+    if isinstance(image, str | PathLike):
+        from stippler.files.read.picture import size_of_picture
+
+        columns, rows = size_of_picture(Path(image))
+        return columns * rows
+    shape = getattr(image, "size", None) if hasattr(image, "getbands") else np.shape(image)
+    return int(np.prod(shape[:2])) if shape else 0
 
 
 def _polygon(area: Any) -> Polygon | MultiPolygon:

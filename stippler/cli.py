@@ -18,7 +18,7 @@ from stippler.cli_options import (
     with_only_style_options,
     with_style_options,
 )
-from stippler.errors import ParameterError, StipplerError
+from stippler.errors import ParameterError, StipplerError, StipplerWarning
 from stippler.kernels.machine.numba_import import skip_blas
 from stippler.names import shown
 from stippler.spooled import STDIN, at_hand
@@ -190,14 +190,10 @@ def process(
     from stippler.api import open as open_drawing
     from stippler.api import process as process_areas
     from stippler.export import check_output
-    from stippler.jobs.preflight import processing_warning
 
     check_output(output, [_input(file)], "")
     drawing = open_drawing(file)
     areas = _area_ids(drawing, area)
-    styles = [asked.style] if asked.options else drawing.styles.values()
-    if text := processing_warning(drawing, styles):
-        _note(file, text)
     made = process_areas(drawing, areas, style=asked.base, **asked.keywords)
     made.inputs = (file,)
     made.save(output)
@@ -371,6 +367,12 @@ def _note(file: Path, note: str) -> None:
     fail(f"{shown(file)}: {note}", 0)
 
 
+def _tell(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+    """Say what is to be known, in a line."""
+    if issubclass(category, StipplerWarning):
+        fail(str(message), 0)
+
+
 def _check_page(asked: Asked) -> None:
     from stippler.drawing.page import Page
     from stippler.files.read.picture import check_tone
@@ -384,6 +386,8 @@ def run(args: list[str]) -> int:
     skip_blas()
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # of libraries, about files; what matters is told by us
+        warnings.simplefilter("always", StipplerWarning)
+        warnings.showwarning = _tell
     if not args or args[0] not in (*COMMANDS, "--help", "--version", "--install-desktop"):
         args = ["edit", *args]  # `stippler photo.jpg`
     try:

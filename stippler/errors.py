@@ -57,3 +57,7 @@ class OutputError(StipplerError, OSError):
 
 class DisplayError(StipplerError):
     """No window or no OpenGL where one is needed."""
+
+
+class StipplerWarning(UserWarning):
+    """What is to be known of a job or a file, and hinders neither."""

@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING
 
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.page import MAX_PAGE_MM, Page
-from stippler.errors import DrawingFileError, GeometryError, StipplerError, TableError
+from stippler.errors import (
+    DrawingFileError,
+    GeometryError,
+    StipplerError,
+    StipplerWarning,
+    TableError,
+)
 from stippler.files.native.container import is_container
 from stippler.files.native.drawing_file import ENDING, open_drawing
 
@@ -32,7 +38,7 @@ def open_file(path: Path) -> Drawing:
         return _of_table(path)
     drawing, mended = _opened(path)
     if mended:
-        warnings.warn(f"{path}: {mended}", stacklevel=2)
+        warnings.warn(f"{path}: {mended}", StipplerWarning, stacklevel=3)
     return drawing
 
 

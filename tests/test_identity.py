@@ -8,13 +8,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
 import stippler
 from stippler import cli
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import ON_CURVE, Dots
+from stippler.drawing.line import Line
+from stippler.drawing.planar.path import Path as LinePath
 from stippler.drawing.style import Style
 from stippler.drawing.style_presets import preset, preset_keys
+from stippler.editor import processing
 from stippler.editor.session import Session
 from stippler.files.write.table import columns_of
 from stippler.jobs.stippling import stipple_picture
@@ -23,6 +27,7 @@ from stippler.jobs.worker import Update
 from stippler.kernels.machine.pool import set_threads
 from stippler.stippling.pipeline import run
 from stippler.stippling.task import SETTLE, Standing, Task
+from stippler.stippling.tasks import relaxing
 
 WIDTH_MM, N_DOTS, N_STEPS = 60.0, 250, 4
 
@@ -161,3 +166,86 @@ def test_one_thread_and_two_draw_the_same_dots(picture, how) -> None:
     assert len(one) == 6_000
     assert same(one, two)
     assert same(one_resumed, two_resumed)
+
+
+def lined(picture: Path) -> stippler.Drawing:
+    """Return a drawing of two lines that dots adhere to, and of one that they keep off."""
+    drawing = stippler.stipple(picture, N_DOTS, WIDTH_MM, iterations=N_STEPS)
+    paths = ([(5, 10), (40, 30), (58, 12)], [(8, 40), (50, 5)], [(2, 42), (58, 44)])
+    meetings = ("adhere", "adhere", "distance")
+    drawing.lines = {
+        k: Line(f"line {k}", LinePath.polyline(path), meeting=meeting, reach_mm=3.0)
+        for k, (path, meeting) in enumerate(zip(paths, meetings, strict=True))
+    }
+    return drawing
+
+
+def ended(session: Session) -> Dots:
+    while session.busy:
+        session.poll()
+    assert session.document is not None
+    return session.document.dots.by_id()
+
+
+def held(dots: Dots) -> list[bytes]:
+    return [a.tobytes() for a in (dots.constraint, dots.curve, dots.parameter)]
+
+
+def test_dots_line_up_alike_from_everywhere(picture, tmp_path) -> None:
+    drawing = lined(picture)
+    made = stippler.process(drawing, 0).dots
+    assert (made.constraint == ON_CURVE).sum() > 5
+    session = session_of(drawing.style_of(0))
+    session.show(drawing.snapshot())
+    assert processing.process(session, [0])
+    ours = ended(session)
+    assert same(made, ours)
+    assert held(made) == held(ours)
+    drawing.save(tmp_path / "lined.stipple")
+    out = tmp_path / "again.stipple"
+    told = ["process", str(tmp_path / "lined.stipple"), "-o", str(out), "--area", "0"]
+    assert cli.run(told) == 0
+    theirs = stippler.open(out).dots
+    assert same(made, theirs)
+    assert held(made) == held(theirs)
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_relaxing_with_lines_is_the_same_in_the_window_and_by_its_task(picture, weighted) -> None:
+    drawing = lined(picture)
+    session = session_of(replace(drawing.style_of(0), weighted=weighted))
+    session.show(drawing.snapshot())
+    session.relax(6, weighted=weighted)
+    ours = ended(session)
+    frozen = replace(drawing, dots=drawing.dots.by_id())
+    task, rows, _ = relaxing(frozen, replace(session.style, weighted=weighted), 6)
+    *_, made = run(task)
+    assert np.array_equal(ours.position_mm[rows], made.position_mm)
+    assert made.holding is not None
+    on = made.holding.curve >= 0
+    assert on.sum() > 5
+    assert np.array_equal(ours.curve[rows][on], made.holding.curve[on])
+    assert np.array_equal(ours.parameter[rows][on], made.holding.along_mm[on])
+    assert (ours.constraint[rows][on] == ON_CURVE).all()
+
+
+def test_starting_anew_meets_the_lines_that_were_drawn(picture) -> None:
+    session = session_of(Style(n_dots=N_DOTS, iterations=N_STEPS))
+    session.open(picture)
+    ended(session)
+    document = session.document
+    assert document is not None
+    document.begin("Lines")
+    for line in lined(picture).lines.values():
+        document.add("line", line)
+    document.commit()
+    session.start()
+    dots = ended(session)
+    assert session.document is document
+    off = document.drawing.lines[2]
+    away = shapely.distance(
+        shapely.linestrings(off.path.points_mm),  # type: ignore[attr-defined]
+        shapely.points(dots.position_mm),
+    )
+    assert away.min() >= 0.1 + 0.3 - 1e-6
+    assert (dots.constraint == ON_CURVE).sum() > 5

@@ -304,10 +304,10 @@ class Document:
 
         Dots that are gone, fixed, or changed by a person since the run began stay as they are.
         """
-        if (run := self._run) is None:
+        if self._run is None:
             return 0
-        limits = self._derived.limits(run.base)
-        n, furthest_mm = run.merge(self._store, position_mm, limits, holding)
+        limits = self._derived.limits(self._run.base)
+        n, furthest_mm = self._run.merge(self._store, position_mm, limits, holding)
         self._index.drift(furthest_mm)
         self.changes.note_places()
         return n
@@ -381,11 +381,12 @@ class Document:
             draft, self._draft = self._draft, None
             self._apply(draft.finish().inverse())
 
-    def draft(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> None:
+    def draft(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32],
+              holding: Holding | None = None) -> None:  # fmt: skip
         """Show the dots of the draft as they are now; ignored where there is none."""
         if self._draft is None:
             return
-        if self._draft.show(position_mm, radius_mm):
+        if self._draft.show(position_mm, radius_mm, holding):
             self._index.lose()
             self.changes.note_places()
         else:

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.dots import Dots
+from stippler.drawing.dots import FREE, NO_CURVE, ON_CURVE, Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.edit import Edit
 from stippler.drawing.recorder import Recorder
+from stippler.drawing.run import Holding
 from stippler.drawing.store import DotStore, Rows
 from stippler.drawing.style import Style
 from stippler.drawing.style_shape import shaped, turns_with_edges
@@ -53,8 +54,19 @@ class Draft:
         """How many dots it has so far."""
         return len(self._store) - self._n_others
 
-    def show(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> bool:
+    def show(
+        self,
+        position_mm: NDArray[np.float64],
+        radius_mm: NDArray[np.float32],
+        holding: Holding | None = None,
+    ) -> bool:
         """Take the dots as they are now; return whether they are the same ones, moved or sized."""
+        is_same = self._show(position_mm, radius_mm)
+        if holding is not None:
+            self._hold(holding)
+        return is_same
+
+    def _show(self, position_mm: NDArray[np.float64], radius_mm: NDArray[np.float32]) -> bool:
         store, n = self._store, len(position_mm)
         if n == self.n_dots:
             rows = slice(self._n_others, len(store))
@@ -66,6 +78,14 @@ class Draft:
         dots = shaped(dots, self._style, self._drawing.reference)
         store.append(replace(dots, id=store.new_ids(n)))
         return False
+
+    def _hold(self, holding: Holding) -> None:
+        """Let lines hold the dots."""
+        curve, along_mm = holding.curve, holding.along_mm
+        rows = np.arange(self._n_others, len(self._store))
+        on = np.where(curve == NO_CURVE, FREE, ON_CURVE).astype(np.int8)
+        for name, values in (("constraint", on), ("curve", curve), ("parameter", along_mm)):
+            self._store.write(name, rows, values)
 
     def set(self, kind: str, i: int, value: Any) -> None:
         """Set a value of another kind as a part of it."""

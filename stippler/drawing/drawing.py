@@ -84,6 +84,11 @@ class Drawing:
         """Return what an area's border is to its dots: as it says itself, or else its style."""
         return self.areas[area].border or self.style_of(area).border
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is the page alone, without further areas, patterns or lines."""
+        return len(self.areas) == 1 and not (self.patterns or self.lines)
+
     def outlines(self) -> dict[int, Polygon | MultiPolygon]:
         """Return the outlines of all areas in mm, from the lowest to the uppermost."""
         return {i: self.areas[i].outline_mm for i in sorted(self.areas)}

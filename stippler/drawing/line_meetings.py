@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from stippler.drawing.dots import ON_CURVE, Dots
 from stippler.drawing.line import ADHERE, DISTANCE, Line
 from stippler.drawing.line_index import LineIndex
+from stippler.drawing.run import Holding
 
 Points = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _MOST_PARTS = 32
 _TOLERANCE_MM = 1e-8
+_SAME_MM = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,3 +125,16 @@ class LineMeetings:
         dots.position_mm[near] = feet[near]
         dots.constraint[near], dots.curve[near] = ON_CURVE, self.ids[line[near]]
         dots.parameter[near] = along[near]
+
+    def hold(self, dots: Dots, holding: Holding) -> None:
+        """Let lines hold new dots that lie on them; those whose lines were changed since do not."""
+        for k, line in zip(
+            self.ids.tolist(), self.adhering.lines if self.adhering else (), strict=True
+        ):
+            rows = np.flatnonzero(holding.curve == k)
+            places = line.at(holding.along_mm[rows])
+            fits = np.abs(places - dots.position_mm[rows]).max(axis=1, initial=0.0) < _SAME_MM
+            rows, places = rows[fits], places[fits]
+            dots.position_mm[rows] = places
+            dots.constraint[rows], dots.curve[rows] = ON_CURVE, k
+            dots.parameter[rows] = holding.along_mm[rows]

@@ -83,7 +83,11 @@ class DotStore:
 
     def write(self, field: str, rows: Rows, values: NDArray[np.generic]) -> None:
         """Set one field of some rows."""
-        getattr(self.dots, field)[rows] = values
+        room = getattr(self.dots, field)
+        if room.ndim == 2 and np.shape(values) == (len(rows), 2):
+            _flat(room)[rows] = _flat(values.astype(room.dtype, copy=False))
+        else:
+            room[rows] = values
 
     def append(self, dots: Dots) -> Rows:
         """Add dots in new rows at the end; return those."""

@@ -24,6 +24,7 @@ _PAPER, _PAPER_SHARE, _PAPER_WIDTH = 0.3, 0.2, 0.02  # no darker, rarer, more un
 _PALE, _DARK, _GAMMAS = 0.28, 0.40, (0.6, 2.0)  # mean ink that is left as it is, else aimed at
 _PALEST, _DARKEST, _MOST_GAMMAS = 0.22, 0.48, (0.4, 4.0)  # and what powers beyond those serve
 _LEVELS = 1024
+_AT_ONCE = 65_536  # pixels
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +71,7 @@ class ToneCurve:
 
 def illustration(darkness: NDArray[np.float32]) -> ToneCurve:
     """Choose the curve for a picture by its perceptual darkness."""
-    bins = np.minimum((darkness.ravel() * _LEVELS).astype(np.int32), _LEVELS - 1)
-    share = np.bincount(bins, minlength=_LEVELS) / max(darkness.size, 1)
+    share = _counts(darkness.ravel()) / max(darkness.size, 1)
     levels = (np.arange(_LEVELS) + 0.5) / _LEVELS
     white = _white_of(share, levels)
     inked = np.where(levels > white, share, 0.0)
@@ -81,6 +81,15 @@ def illustration(darkness: NDArray[np.float32]) -> ToneCurve:
     black = min(max(float(dark_end) + 0.5 / _LEVELS, white + _LEAST_SPAN), 1.0)
     white = min(white, black - _LEAST_SPAN)
     return ToneCurve(white, black, _gamma_for(share, levels, white, black), DEEPEST)
+
+
+def _counts(darkness: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Return how many pixels there are of each level."""
+    found = np.zeros(_LEVELS, np.int64)
+    for first in range(0, len(darkness), _AT_ONCE):  # what lies between fits the cache
+        bins = (darkness[first : first + _AT_ONCE] * np.float32(_LEVELS)).astype(np.intp)
+        found += np.bincount(np.minimum(bins, _LEVELS - 1, out=bins), minlength=_LEVELS)
+    return found
 
 
 def _white_of(share: NDArray[np.float64], levels: NDArray[np.float64]) -> float:

@@ -211,7 +211,7 @@ class Making(Job):
                 if work.note:
                     desk.messages.say(work.note, WARNING)
                 document.begin_draft("Stipple", self.area, self.style, work.reference)
-            document.draft(made.position_mm, made.radius_mm)
+            document.draft(made.position_mm, made.radius_mm, made.holding)
             self.last = made
         return self
 
@@ -268,6 +268,8 @@ class Filling(Job):
             from stippler.drawing.dots import Dots
 
             dots, n_before = Dots.round(work.points_mm, self.radius_mm), len(document.dots)
+            if work.held is not None and document.meetings is not None:
+                document.meetings.hold(dots, work.held)
             as_one_step(document, "Fill", lambda document: document.insert(dots))
             desk.messages.say(f"{len(document.dots) - n_before:,} dots added")
         return self
@@ -323,7 +325,7 @@ class Processing(Job):
         if self.drafting != area:
             begin(document, area)
             self.drafting = area
-        document.draft(made.position_mm, made.radius_mm)
+        document.draft(made.position_mm, made.radius_mm, made.holding)
 
 
 Activity = Idle | Opening | Readying | Reopening | Making | Relaxing | Filling | Processing

@@ -157,7 +157,7 @@ class Session(SessionState):
         source = self._asked
         if source is None:
             self.messages.say("open a picture first", WARNING)
-        elif self.document is None or self.starts_afresh or len(self.document.drawing.areas) == 1:
+        elif self.document is None or self.starts_afresh or self.document.drawing.is_plain:
             self._begin(self._as_wanted(source))
         else:
             processing.start_all(self)
@@ -238,8 +238,9 @@ class Session(SessionState):
         self.supersede()
         outlines, source = [part for part in parts.values() if not part.is_empty], self.source
         self._warn("fill", self.n_dots + values.n_dots * len(outlines))
+        frozen = document.drawing.snapshot() if document.drawing.lines else None
         self.launch(
-            lambda: stippling.fill(outlines, values),
+            lambda: stippling.fill(outlines, values, frozen),
             lambda k: Filling(k, "fill", source, values.radius_mm),
         )
 

@@ -22,7 +22,6 @@ Rows = NDArray[np.int64]
 
 _FINE_DPI = 150.0  # of the picture that a 1-bit raster is held against; 64 samples a pixel
 _PART_ROUNDS = 60
-_HIDES = 0.5  # of the smaller radius: pairs that overlap by more count as one blot, not as a gap
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,8 +143,7 @@ def _near_pairs(dots: Dots, scale: float, within_mm: float) -> tuple[Rows, NDArr
     pairs, away, apart = pairs[near], away[near], apart[near]
     direction = np.arctan2(away[:, 1], away[:, 0])
     gaps = apart - _reach(dots, pairs[:, 0], direction) - _reach(dots, pairs[:, 1], direction)
-    hidden = gaps < -_HIDES * dots.radius_mm[pairs].min(axis=1)
-    kept = (gaps * scale < within_mm) & ~hidden & (gaps > 0)
+    kept = (gaps * scale < within_mm) & (gaps > 0)
     return pairs[kept].astype(np.int64), gaps[kept] * scale
 
 

@@ -30,6 +30,7 @@ _DO = {
     "export": "save first, and choose fewer dots per inch",
     "save": "close other programs first",
 }
+_RASTERS, _OWN = (".png", ".tif", ".tiff"), ".stipple"
 _LEFT = 0.9  # of what is available: others need memory, too
 
 _MEMINFO = Path("/proc/meminfo")
@@ -96,6 +97,16 @@ def processing_warning(drawing: Drawing, styles: Iterable[Style]) -> str:
     n_pixels = 0 if reference is None else reference.source.darkness.size
     n_dots = max((style.n_dots or DEFAULT_DOTS for style in styles), default=0)
     return warning("process", n_dots, n_pixels)
+
+
+def saving_warning(drawing: Drawing, path: Path, dpi: float | None) -> str:
+    """Return what to tell before a drawing is written; `dpi` counts where the file has pixels."""
+    ending = path.suffix.lower()
+    page, n_pixels = drawing.page, 0
+    if dpi and ending in _RASTERS:
+        n_pixels = int(page.width_mm * page.height_mm * (dpi / 25.4) ** 2)
+    job = "save" if ending == _OWN else "export"
+    return warning(job, len(drawing.dots), n_pixels)
 
 
 def _told(n_bytes: int) -> str:

@@ -98,7 +98,7 @@ def process_now(document: Document, areas: Sequence[int]) -> tuple[str, ...]:
     results = list(process_areas(tasks, snapshots=False))
     for area, made in results[-1].finished if results else ():
         begin(document, area)
-        document.draft(made.position_mm, made.radius_mm)
+        document.draft(made.position_mm, made.radius_mm, made.holding)
         document.end_draft()
         notes += notes_on(made, f"area {document.drawing.areas[area].name!r}")
     return tuple(notes)

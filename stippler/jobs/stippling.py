@@ -12,17 +12,12 @@ from stippler.jobs.reading import read_source
 from stippler.jobs.work import PREPARE, READ, Source, Work
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
     from shapely.geometry import MultiPolygon, Polygon
 
-    from stippler.drawing.dots import Dots
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
-    from stippler.drawing.run import Holding
     from stippler.drawing.style import Style
     from stippler.stippling.fill import Filling
-    from stippler.stippling.progress import Progress
     from stippler.stippling.task import Task
 
 
@@ -82,6 +77,10 @@ def relax_drawing(
     another area's part stay where they are; so do those of other areas than the ones given.
     """
     yield Work("relax", 0, steps)
+    import numpy as np
+
+    from stippler.drawing.dots import NO_CURVE
+    from stippler.drawing.run import Holding
     from stippler.stippling.pipeline import run
     from stippler.stippling.progress import DONE
     from stippler.stippling.tasks import relaxing
@@ -95,38 +94,33 @@ def relax_drawing(
         if made.stage == DONE:
             sizes = drawing.dots.radius_mm.copy()
             sizes[rows] = made.radius_mm[: len(rows)]
-        held = None
-        if made.line_of_dot is not None and task.lines is not None:
-            held = holding(drawing.dots, rows, task.lines.ids, made)
+        held = made.holding
+        if held is not None:
+            curve, along = np.full(len(moved), NO_CURVE, np.int32), np.zeros(len(moved))
+            curve[rows], along[rows] = held.curve, held.along_mm
+            held = Holding(curve, along)
         yield Work(made.stage, made.done, made.total, moved_mm=moved, radius_mm=sizes, held=held)
 
 
-def holding(dots: Dots, rows: NDArray[np.intp], ids: tuple[int, ...], made: Progress) -> Holding:
-    """Return which lines hold dots, and where, once some of them have been moved."""
-    import numpy as np
+def fill(
+    outlines: Sequence[Polygon | MultiPolygon], values: Filling, drawing: Drawing | None = None
+) -> Iterator[Work]:
+    """Find places for dots in areas that have no picture, as many in each.
 
-    from stippler.drawing.run import Holding
-
-    line, along = made.line_of_dot, made.along_mm
-    assert line is not None, "the lines of these dots are known"
-    assert along is not None, "and so is where on them they lie"
-    curve, parameter = dots.curve.copy(), dots.parameter.copy()
-    on = line >= 0
-    curve[rows[on]] = np.array(ids, np.int32)[line[on]]
-    parameter[rows[on]] = along[on]
-    return Holding(curve, parameter)
-
-
-def fill(outlines: Sequence[Polygon | MultiPolygon], values: Filling) -> Iterator[Work]:
-    """Find places for dots in areas that have no picture, as many in each."""
+    Those within reach of lines that a drawing's dots adhere to line up on these.
+    """
     yield Work("fill", 0, len(outlines))
     import numpy as np
 
     from stippler.stippling.initial_points import fill_area
+    from stippler.stippling.new_on_lines import filled_up
 
     found = [np.empty((0, 2))]
     for k, outline in enumerate(outlines, start=1):
         found.append(fill_area(outline, values.n_dots, values.arrangement, values.seed))
         if k < len(outlines):
             yield Work("fill", k, len(outlines))
-    yield Work("fill", len(outlines), len(outlines), points_mm=np.concatenate(found))
+    points, held = np.concatenate(found), None
+    if drawing is not None and drawing.lines:
+        points, held = filled_up(drawing, points, outlines)
+    yield Work("fill", len(outlines), len(outlines), points_mm=points, held=held)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from stippler.kernels.halftone.scan_order import outside_polygon
 from stippler.stippling.beyond import NOTHING, Beyond
 from stippler.stippling.borders import Borders, along_line
-from stippler.stippling.ground import AreaGround, Floats, Ground, without_dots_at
+from stippler.stippling.ground import AreaGround, Evened, Floats, Ground, without_dots_at
 from stippler.stippling.halftone_area import edges_of
+from stippler.stippling.near_lines import NearLines
 from stippler.stippling.page_raster import (
     BLEED_SPACINGS,
     FEWEST_WITH_BLEED,
@@ -23,7 +24,8 @@ from stippler.stippling.radii import solve_radii
 from stippler.stippling.task import STIPPLE, Task
 from stippler.stippling.tone import DotRule, rule_for
 
-_BAND, _CELLS = 3.0, 6.0  # mean spacings; dots beside the line, and those that bound their cells
+_STRIP = 2.0  # mean spacings that dots are laid out beyond a line; wider made no rim more even
+_BAND, _CELLS = 3.0, 4.0  # mean spacings; dots beside the line, and those that bound their cells
 
 
 def area_ground(task: Task) -> AreaGround:
@@ -45,15 +47,14 @@ def area_ground(task: Task) -> AreaGround:
         return own
     n_dots = style.n_dots or float(own.raster.rule.density(own.raster.darkness).sum())
     spacing = math.sqrt(outline_mm.area / max(n_dots, 1.0))
-    width_mm = BLEED_SPACINGS * spacing
-    beyond = _beyond(task, width_mm, n_dots / outline_mm.area)
+    beyond = _beyond(task, BLEED_SPACINGS * spacing, n_dots / outline_mm.area)
     x0, y0, x1, y1 = outline_mm.bounds
     if n_dots < FEWEST_WITH_BLEED or min(x1 - x0, y1 - y0) < LEAST_WIDTH * spacing:
         borders = Borders(outline_mm)
     borders = replace(borders, cut=beyond.cut)
     if not (borders.bleeding or task.seen_mm):
         return own
-    wide = WideGround(task, own, borders, width_mm, beyond)
+    wide = WideGround(task, own, borders, _STRIP * spacing, beyond)
     return wide if wide.evens_rim or task.seen_mm else own
 
 
@@ -145,29 +146,47 @@ class WideGround(AreaGround):
         return own.inside(at[kept] - np.array(own.origin_mm)) / own.raster.pixel_mm
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """Where an area's dots may bleed, and how dark it is there, seen without its border."""
+    """Where an area's dots may bleed, and how dark it is there, seen without its border.
 
-    borders: Borders
-    raster: PageRaster
-    origin_mm: tuple[float, float]
+    Sizes beside the lines are solved once, before any dot is moved across them.
+    """
 
-    def evened(
-        self, ground: AreaGround, points: Floats, give: float
-    ) -> tuple[Floats, NDArray[np.bool_]]:
+    def __init__(
+        self, borders: Borders, raster: PageRaster, origin_mm: tuple[float, float]
+    ) -> None:
+        self.borders, self.raster, self.origin_mm = borders, raster, origin_mm
+        self._band: NDArray[np.intp] | None = None
+        self._edges: dict[int, Floats] = {}
+
+    def _begin(self, ground: AreaGround, points: Floats) -> NDArray[np.intp]:
+        """Find the dots beside the lines and their sizes; return which these are."""
+        raster, side = ground.raster, ground.raster.pixel_mm
+        self._spacing = math.sqrt(self.borders.outline.area / max(len(points), 1))
+        self._lines = NearLines(self.borders.bleeding, _CELLS * self._spacing)
+        near = self._lines.nearest(points * side + np.array(ground.origin_mm))
+        band = np.flatnonzero(np.isfinite(near.away))
+        n_in_box = round(raster.darkness.size * side**2 / self._spacing**2)
+        *_, (_, radii) = solve_radii(points[band], raster.darkness, raster.rule, n_in_box)
+        self._radius_mm = radii * side
+        return band
+
+    def evened(self, ground: AreaGround, points: Floats, give: float) -> Evened:
         """Move dots across the lines; return them, in pixels, and which are beside a line."""
-        raster, corner = ground.raster, np.array(ground.origin_mm)
-        side = raster.pixel_mm
-        spacing = math.sqrt(self.borders.outline.area / max(len(points), 1))
-        at = points * side + corner
-        band = np.flatnonzero(self.borders.near(at, _CELLS * spacing))
-        if len(band):
-            n_in_box = round(raster.darkness.size * side**2 / spacing**2)
-            *_, (_, radii) = solve_radii(points[band], raster.darkness, raster.rule, n_in_box)
-            at[band] = self.borders.rim_evened(at[band], radii * side, self._darkness, give)
-        evened = ground.inside(at - corner) / side
-        return evened, self.borders.near(at, _BAND * spacing)
+        if self._band is None:
+            self._band = self._begin(ground, points)
+        band, side, corner = self._band, ground.raster.pixel_mm, np.array(ground.origin_mm)
+        before = points[band] * side + corner
+        after = self.borders.rim_evened(
+            before, self._radius_mm, self._darkness, give, self._lines, self._edges
+        )
+        moved = np.flatnonzero((after != before).any(axis=1))
+        points = points.copy()
+        points[band[moved]] = ground.inside(after[moved] - corner) / side
+        beside, around = np.zeros((2, len(points)), np.bool_)
+        around[band] = True
+        beside[band] = self._lines.nearest(after).away < _BAND * self._spacing
+        return Evened(points, beside, around)
 
     def _darkness(self, at_mm: Floats) -> Floats:
         return _darkness_at(self.raster, self.origin_mm, at_mm).astype(np.float64)

@@ -27,6 +27,7 @@ from stippler.stippling.border_policies import (
     polygons_in,
 )
 from stippler.stippling.halftone_area import edges_of
+from stippler.stippling.near_lines import Nearest, NearLines
 from stippler.stippling.tone import DotRule
 
 _FARTHEST = 2.0  # radii beyond a line from which a dot is drawn back to it, at most
@@ -163,20 +164,14 @@ class Borders:
         lines = shapely.multilinestrings(self.cut)
         return np.asarray(shapely.dwithin(shapely.points(foot), lines, ON_LINE_MM))
 
-    def near(self, position_mm: Floats, reach_mm: float) -> NDArray[np.bool_]:
-        """Tell which dots lie so near a line that bleeds."""
-        found = np.zeros(len(position_mm), np.bool_)
-        tree = shapely.STRtree(shapely.points(position_mm))
-        for line in self.bleeding:
-            found[tree.query(line, predicate="dwithin", distance=reach_mm)] = True
-        return found
-
     def rim_evened(
         self,
         position_mm: Floats,
         radius_mm: Floats,
         darkness_at: Callable[[Floats], Floats],
         give: float,
+        lines: NearLines | None = None,
+        edges: dict[int, Floats] | None = None,
     ) -> Floats:
         """Move dots across lines that bleed until the ink along them meets the tone, end to end.
 
@@ -189,68 +184,80 @@ class Borders:
             Of points (k, 2) of the page, mm.
         give : float
             How far a dot may move, in its radius.
+        lines : NearLines, optional
+            Those that bleed, if they are known.
+        edges : dict, optional
+            The darkness along lines, by their numbers, where it is known; filled where it is not.
         """
         at = np.array(position_mm, np.float64)
         if not len(at):
             return at
-        tree = shapely.STRtree(shapely.points(at))
-        reach = _NEAR * float(radius_mm.max())
-        for line in self.bleeding:
-            near = np.sort(tree.query(line, predicate="dwithin", distance=reach))
-            at[near] = self._evened(line, at[near], radius_mm[near], darkness_at, give)
+        if lines is None:
+            lines = NearLines(self.bleeding, _NEAR * float(radius_mm.max()))
+        found = lines.nearest(at)
+        touching = np.flatnonzero(found.away < _NEAR * radius_mm)
+        touching = touching[np.argsort(found.along[touching], kind="stable")]
+        for k, line in enumerate(self.bleeding):
+            which = touching[found.line[touching] == k]
+            if len(which):
+                edge = _edge(line, k, float(radius_mm[which].min()), darkness_at, edges)
+                deep = _evened(line, found, which, radius_mm[which], edge, give)
+                at[which] = self._placed(line, at[which], found, which, deep)
+        lost = touching[~shapely.intersects_xy(self.outline, *at[touching].T)]
+        at[lost] = position_mm[lost]
         return at
 
-    def _evened(
-        self,
-        line: LineString,
-        at: Floats,
-        radius: Floats,
-        darkness_at: Callable[[Floats], Floats],
-        give: float,
-    ) -> Floats:
-        points = shapely.points(at)
-        inwards = shapely.distance(line, points)
-        along = shapely.line_locate_point(line, points)
-        which = np.flatnonzero(inwards < _NEAR * radius)
-        if not len(which):
-            return at
-        which = which[np.argsort(along[which], kind="stable")]
-        n = max(int(_SAMPLES * line.length / float(radius[which].min())), 1)
-        unit = line.length / n
-        edge = darkness_at(along_line(line, n))
-        asked = np.concatenate(([0.0], np.cumsum(edge, dtype=np.float64)))
-        deep = inwards[which] / unit
-        r = radius[which] / unit
-        even_rim(along[which] / unit, deep, r, asked, _LINE * float(r.min()), give)
-        out = at.copy()
-        out[which] = self._placed(line, at[which], along[which], inwards[which], deep * unit)
-        lost = ~shapely.intersects_xy(self.outline, out[:, 0], out[:, 1])
-        out[lost] = at[lost]
-        return out
-
     def _placed(
-        self, line: LineString, at: Floats, along: Floats, before: Floats, after: Floats
+        self, line: LineString, at: Floats, found: Nearest, which: Rows, after: Floats
     ) -> Floats:
         """Return places so far in from the places of a line that are next to dots."""
-        foot = shapely.get_coordinates(shapely.line_interpolate_point(line, along))
+        foot, before = found.feet[which], found.away[which]
         step = 1e-6 * line.length
-        low, high = np.maximum(along - step, 0.0), np.minimum(along + step, line.length)
-        tangent = shapely.get_coordinates(shapely.line_interpolate_point(line, high))
-        tangent -= shapely.get_coordinates(shapely.line_interpolate_point(line, low))
-        tangent /= np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-        inward = np.column_stack([-tangent[:, 1], tangent[:, 0]])
-        out = ~shapely.intersects_xy(self.outline, *(foot + step * inward).T)
-        inward[out] *= -1.0
         far = before > step
-        inward[far] = (at[far] - foot[far]) / before[far, None]
+        inward = (at - foot) / np.maximum(before, 1e-300)[:, None]
+        on = np.flatnonzero(~far)
+        inward[on] = found.direction[which[on]][:, ::-1] * (-1.0, 1.0)
+        out = on[~shapely.intersects_xy(self.outline, *(foot[on] + step * inward[on]).T)]
+        inward[out] *= -1.0
         placed: Floats = foot + after[:, None] * inward
         return placed
 
 
+def _edge(
+    line: LineString,
+    k: int,
+    least_mm: float,
+    darkness_at: Callable[[Floats], Floats],
+    edges: dict[int, Floats] | None,
+) -> Floats:
+    """Return the darkness along a line, at equal distances of a share of the least radius."""
+    if edges is not None and k in edges:
+        return edges[k]
+    edge = darkness_at(along_line(line, max(int(_SAMPLES * line.length / least_mm), 1)))
+    if edges is not None:
+        edges[k] = edge
+    return edge
+
+
+def _evened(
+    line: LineString, found: Nearest, which: Rows, radius: Floats, edge: Floats, give: float
+) -> Floats:
+    """Return how far in dots are to lie that may touch a line; they are sorted along it."""
+    unit = line.length / len(edge)
+    asked = np.concatenate(([0.0], np.cumsum(edge, dtype=np.float64)))
+    deep: Floats = found.away[which] / unit
+    r = radius / unit
+    even_rim(found.along[which] / unit, deep, r, asked, _LINE * float(r.min()), give)
+    inwards: Floats = deep * unit
+    return inwards
+
+
 def along_line(line: LineString, n: int) -> Floats:
     """Return n places at equal distances along a line."""
-    at = (np.arange(n) + 0.5) * (line.length / n)
-    return np.asarray(shapely.get_coordinates(shapely.line_interpolate_point(line, at)))
+    corners = shapely.get_coordinates(line)
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))))
+    at = (np.arange(n) + 0.5) * (way[-1] / n)
+    return np.column_stack([np.interp(at, way, values) for values in corners.T])
 
 
 def joined(edges: Floats) -> tuple[LineString, ...]:

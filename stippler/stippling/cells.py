@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
+from stippler.kernels.cells.big_cells import MANY
 from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
@@ -41,7 +42,7 @@ class Crossing(Protocol):
         ...
 
 
-CORNER_CAP = 64
+CORNER_CAP = MANY
 GRAIN = 4096
 FEW = 256
 """Smallest share of a thread where cells are computed one by one, and of a list of them."""

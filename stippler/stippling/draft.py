@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.run import Holding
 from stippler.drawing.style import Style
 from stippler.stippling.area_bleed import area_ground
 from stippler.stippling.ground import Ground, PageGround
@@ -36,6 +37,8 @@ class Draft:
         Dots that are there already, and are not made anew.
     shortfall : Shortfall or None
         What the ink falls short of, once it is known.
+    holding : Holding or None
+        Which lines hold dots, once some have lined up.
     """
 
     task: Task
@@ -45,6 +48,7 @@ class Draft:
     fixed: NDArray[np.bool_] | None = None
     stand: Floats = field(default_factory=lambda: np.empty((0, 2)))
     shortfall: Shortfall | None = None
+    holding: Holding | None = None
 
     @classmethod
     def of(cls, task: Task) -> Draft:
@@ -109,7 +113,8 @@ class Draft:
         if lack is not None and lack.box_mm is not None:
             (x0, y0, x1, y1), (x, y) = lack.box_mm, self.ground.origin_mm
             lack = replace(lack, box_mm=(x0 + x, y0 + y, x1 + x, y1 + y))
-        return Progress(DONE, 1, 1, *self._on_page(*self.shown()), shortfall=lack)
+        made = self._on_page(*self.shown())
+        return Progress(DONE, 1, 1, *made, shortfall=lack, holding=self.holding)
 
     def _on_page(
         self, points: Floats, radii: Floats

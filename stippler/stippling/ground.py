@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
@@ -40,6 +39,24 @@ _DOTS_PER_PIXEL = 0.1
 _NOBODY = np.empty((0, 2))
 _FEWEST = 500
 _GRID_RADII = (0.1, 0.75)  # of the largest, and of the spacing: sizes carry all of the tone there
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evened:
+    """Dots that were moved across edges that bleed.
+
+    Attributes
+    ----------
+    points : (n, 2) float64, pixels
+    beside : (n,) bool
+        Those that have to do with the edges.
+    around : (n,) bool or None
+        Those, and all that may lie close to them; None is everyone.
+    """
+
+    points: Floats
+    beside: NDArray[np.bool_]
+    around: NDArray[np.bool_] | None = None
 
 
 class Ground(Protocol):
@@ -107,7 +124,7 @@ class Ground(Protocol):
         """Return the dots that are left once the bleed is cut off, in pixels of `after_trim`."""
         ...
 
-    def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
+    def rim_evened(self, points: Floats, give: float) -> Evened:
         """Even out the ink along edges that bleed; tell which dots have to do with them."""
         ...
 
@@ -183,10 +200,10 @@ class PageGround:
         """Return the dots of the page."""
         return self.raster.trim(points, n_wanted)
 
-    def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
+    def rim_evened(self, points: Floats, give: float) -> Evened:
         """Even out the ink along the page's edge."""
         evened = even_rim(points, self.raster, give)
-        return evened, at_edge(evened, self.raster)
+        return Evened(evened, at_edge(evened, self.raster))
 
 
 class AreaGround:
@@ -305,7 +322,7 @@ class AreaGround:
         """Return the density as it is."""
         return density
 
-    def rim_evened(self, points: Floats, give: float) -> tuple[Floats, NDArray[np.bool_]]:
+    def rim_evened(self, points: Floats, give: float) -> Evened:
         """Even out the ink along the lines that bleed."""
         assert self.rim is not None, "nothing bleeds"
         return self.rim.evened(self, points, give)
@@ -334,6 +351,8 @@ def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> Pa
 
 def without_dots_at(density: NDArray[np.float32], points: Floats) -> NDArray[np.float32]:
     """Return dots per square pixel without the room of dots that are there, in its pixels."""
+    from scipy.ndimage import distance_transform_edt  # a quarter of a second to import
+
     h, w = density.shape
     x, y = points.astype(np.intp).T
     free = np.ones(density.shape, np.bool_)

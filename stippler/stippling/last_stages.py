@@ -7,10 +7,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import KDTree
+import shapely
 
 from stippler.kernels.tone.union_share import shares_of_union
 from stippler.stippling.draft import Draft, Floats
+from stippler.stippling.lines import tone_along
+from stippler.stippling.new_on_lines import Place, lined_up, with_new
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
@@ -54,10 +56,12 @@ def part(draft: Draft, watched: bool) -> Iterator[Step]:
 def rim(draft: Draft, watched: bool) -> Iterator[Step]:
     """Even out the ink along edges that bleed: the page's, or an area's."""
     for k, give in enumerate(_GIVES):
-        draft.points, beside = draft.ground.rim_evened(draft.points, give)
+        evened = draft.ground.rim_evened(draft.points, give)
         yield _rim_step(k + 0.5)
-        within = draft.ground.within(draft.points)
-        draft.points = part_close(draft.points, draft.raster, beside, within)
+        draft.points = points = evened.points
+        some = slice(None) if evened.around is None else np.flatnonzero(evened.around)
+        within = draft.ground.within(points[some])
+        points[some] = part_close(points[some], draft.raster, evened.beside[some], within)
         yield _rim_step(k + 1.0)
 
 
@@ -73,6 +77,25 @@ def onto_ink(draft: Draft, watched: bool) -> Iterator[Step]:
     if draft.radii is None or len(inked) == len(draft.points):
         draft.points = inked
     yield from ()
+
+
+def onto_lines(draft: Draft, watched: bool) -> Iterator[Step]:
+    """Let dots within reach of lines that they adhere to line up on these; others make room."""
+    met, ground, pixel = draft.task.lines, draft.ground, draft.raster.pixel_mm
+    if met is None or not len(draft.points):
+        return
+    n = len(draft.stand)
+    local = ground.inside(np.concatenate((draft.stand, draft.points)) * pixel)
+    corner = (0.0, 0.0, *draft.raster.size_mm)
+    parts = [ground.outline_mm if draft.task.parts_mm else shapely.box(*corner)]
+    place = Place(parts, ground.ink_field(), ground.origin_mm)
+    still = np.arange(len(local)) < n
+    tone = tone_along(draft.task.reference) if draft.style.weighted else None
+    on_page = local + np.array(ground.origin_mm)
+    found = lined_up(with_new(met, len(draft.points)), on_page, still, place, tone)
+    draft.points = (found.position_mm[n:] - np.array(ground.origin_mm)) / pixel
+    draft.holding = met.holding(found.line_of_dot[n:], found.along_mm[n:])
+    yield Step(TONED, _LAST, 1000)
 
 
 def radii(draft: Draft, watched: bool) -> Iterator[Step]:
@@ -127,6 +150,8 @@ def _clear_of_neighbours(draft: Draft, points: Floats) -> Floats:
     beyond = draft.task.neighbours_mm
     if beyond is None or not len(beyond):
         return points
+    from scipy.spatial import KDTree  # which takes a while to import
+
     pixel = draft.raster.pixel_mm
     others = (beyond - np.array(draft.ground.origin_mm)) / pixel
     tree = KDTree(others)

@@ -28,6 +28,7 @@ _SAMPLES = 8  # of the tone, for each dot that a piece has room for
 _LANDS = 0.5  # spacings from a line, at which a dot that is drawn comes onto it
 _DRAWN = 0.5  # of the way to the line, a step
 _IN_CROSSING_MM = 1e-6
+_REFUSED_MM = 1e-9  # a dot that is so far from where it was sent has not gone there
 _NEAR_CROSSING = 0.75  # mean distances along the line, at which a dot goes into a crossing
 _MOST_PLACES = 512  # of a piece, where spacing is measured
 
@@ -50,6 +51,8 @@ class OnLines:
         What they do not leave.
     tone : callable, optional
         How dense they are to lie along lines; even if left out.
+    stays : (n,) bool, optional
+        Dots that do not move; others on their lines lie evenly between them.
 
     Attributes
     ----------
@@ -67,8 +70,10 @@ class OnLines:
         points: Points,
         parts: Sequence[shapely.Geometry],
         tone: Tone | None = None,
+        stays: Flags | None = None,
     ) -> None:
         self._lines = met.lines
+        self._stays = np.zeros(len(points), np.bool_) if stays is None else stays
         self._at = LineIndex(met.lines, 0.0)
         self._pieces = Pieces.within(met.lines, parts)
         self.line = met.line_of_dot.astype(np.int64)
@@ -122,7 +127,7 @@ class OnLines:
     def take_back_refused(self, points: Points) -> None:
         """Take note of where dots have come to lie: some may not have gone where they were sent."""
         mine, sent = self._sent
-        back = mine[(points[mine] != sent).any(axis=1)]
+        back = mine[np.abs(points[mine] - sent).max(axis=1, initial=0.0) > _REFUSED_MM]
         self._sent = self._sent[0][:0], self._sent[1][:0]
         if not len(back):
             return
@@ -267,7 +272,7 @@ class OnLines:
         pinned, side = self._pinned.copy(), self._side.copy()
         for k in (0, 1):
             todo = np.flatnonzero(pinned < 0)
-            free = mine[~np.isin(mine, pinned)]
+            free = mine[~(np.isin(mine, pinned) | self._stays[mine])]
             if not len(todo) or not len(free):
                 break
             piece, u = self._cross_piece[k, todo], self._cross_u[k, todo]
@@ -301,6 +306,9 @@ class OnLines:
     def _spread(self) -> None:
         """Spread the dots on all pieces evenly, in one dimension."""
         mine = np.flatnonzero(self._piece >= 0)
+        if not len(mine):
+            self._members = mine, np.empty((0, 2))
+            return
         mine = mine[np.argsort(self._start[self._piece[mine]] + self._u[mine], kind="stable")]
         if len(self._pinned) and len(mine) != self._n_spread:
             if self._n_spread >= 0 or not self._keep_pins(mine):
@@ -324,6 +332,7 @@ class OnLines:
         is_pinned[dots] = True
         piece = np.concatenate([self._piece[mine], self._cross_piece[1 - side, taken]])
         u = np.concatenate([all_u[mine], self._cross_u[1 - side, taken]])
+        is_pinned |= self._stays
         still = np.concatenate([is_pinned[mine], np.ones(len(taken), np.bool_)])
         mass = self._measure.mass(piece, u)
         goal = evened(piece, mass, still, self._measure.whole, self._pieces.is_ring)

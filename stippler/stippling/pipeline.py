@@ -11,7 +11,15 @@ from stippler.drawing.page import Page
 from stippler.stippling.disorder import jitter, mottle
 from stippler.stippling.draft import Draft
 from stippler.stippling.first_dots import first_dots
-from stippler.stippling.last_stages import onto_ink, part, radii, rim, shortfall_of, trim
+from stippler.stippling.last_stages import (
+    onto_ink,
+    onto_lines,
+    part,
+    radii,
+    rim,
+    shortfall_of,
+    trim,
+)
 from stippler.stippling.progress import RELAXED, Progress, Step
 from stippler.stippling.relax_all import StandingDraft, size_again, space
 from stippler.stippling.run_relaxation import relaxed
@@ -75,6 +83,7 @@ def stages_of(draft: Draft) -> list[Stage]:
          and draft.ground.evens_rim),
         (jitter, is_new and style.jitter > 0.0),
         (onto_ink, True),
+        (onto_lines, task.lines is not None),
         (radii, by_tone),
         (mottle, style.size_noise > 0.0),
         (shortfall_of, is_new),

@@ -60,7 +60,8 @@ def part_close(
         if not push_apart(xy, nearest, lack, raster.darkness, rim, moves, up):
             break
         if within:
-            out = ~within[0].contain(xy, within[1][order])
+            moved = np.flatnonzero((xy != before).any(axis=1))
+            out = moved[~within[0].contain(xy[moved], within[1][order[moved]])]
             xy[out], up[out] = before[out], False
     points[order] = xy
     return points

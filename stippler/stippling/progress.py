@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.run import Holding
 from stippler.stippling.tone import Shortfall
 
 FIRST, RELAXED, TONED, DONE = "first dots", "relax", "tone", "done"
@@ -39,9 +40,8 @@ class Progress:
         Mean movement of the last relaxation step; NaN outside relaxation.
     shortfall : Shortfall or None
         On "done".
-    line_of_dot, along_mm : (n,) int32 and float64, or None
-        Where there are lines: the one that each dot lies on, as the task numbers them, or -1; and
-        the arc length there.
+    holding : Holding or None
+        Which of the drawing's lines hold the dots then.
     """
 
     stage: str
@@ -51,8 +51,7 @@ class Progress:
     radius_mm: NDArray[np.float32]
     movement_mm: float = math.nan
     shortfall: Shortfall | None = None
-    line_of_dot: NDArray[np.int32] | None = None
-    along_mm: NDArray[np.float64] | None = None
+    holding: Holding | None = None
 
 
 def notes_on(result: Progress, what: str = "page") -> tuple[str, ...]:

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
-from scipy.spatial import KDTree
 
 from stippler.drawing.reference import Reference
+from stippler.drawing.run import Holding
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
 from stippler.stippling.ground import brought_into
+from stippler.stippling.lines import tone_along
 from stippler.stippling.on_lines import OnLines
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
@@ -37,7 +37,6 @@ _LEVELS = 65
 _RESTLESS, _RINGS = 0.1, 2  # a move, in spacings, that wakes the neighbours within so many rings
 _WHOLE = 1e-6  # of the page
 _INSET_MM = 1e-6  # how far within the border a dot lies that was brought back
-_FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 _BY_CELLS = ("lloyd", "even")  # methods whose steps others may redirect
 _BESIDE = 1.0  # spacings; dots nearer to the page's edge hold still, the bleed's being gone
 
@@ -76,10 +75,7 @@ class StandingDraft:
     @property
     def tone(self) -> Callable[[Floats], Floats] | None:
         """How dense dots are to lie along lines."""
-        reference = self.task.reference
-        if reference is None or not self.task.style.weighted:
-            return None
-        return lambda places: _FAINTEST + reference.at(places).astype(np.float64)
+        return tone_along(self.task.reference) if self.task.style.weighted else None
 
     @property
     def n_steps(self) -> int:
@@ -133,21 +129,20 @@ class StandingDraft:
         """Return a snapshot after a step."""
         points = _frozen(self.come_home()) if watched else np.empty((0, 2))
         sizes = self.radius_mm if watched else np.empty(0, np.float32)
-        line, along = self._lines_of_dots() if watched else (None, None)
+        holding = self._holding() if watched else None
         return Progress(step.stage, step.done, step.total, points, _frozen(sizes),
-                        step.movement_mm, None, line, along)  # fmt: skip
+                        step.movement_mm, None, holding)  # fmt: skip
 
     def finished(self) -> Progress:
         """Return the last snapshot."""
         points, sizes = _frozen(self.come_home()), _frozen(self.radius_mm)
-        line, along = self._lines_of_dots()
-        return Progress(DONE, 1, 1, points, sizes, line_of_dot=line, along_mm=along)
+        return Progress(DONE, 1, 1, points, sizes, holding=self._holding())
 
-    def _lines_of_dots(self) -> tuple[NDArray[np.int32] | None, Floats | None]:
-        if self.on_lines is None:
-            return None, None
+    def _holding(self) -> Holding | None:
+        if self.on_lines is None or self.task.lines is None:
+            return None
         self.on_lines.take_back_refused(self.points)
-        return _frozen(self.on_lines.line.astype(np.int32)), _frozen(self.on_lines.along)
+        return self.task.lines.holding(self.on_lines.line, self.on_lines.along)
 
 
 def space(draft: StandingDraft, watched: bool) -> Iterator[Step]:
@@ -267,6 +262,8 @@ def _around_restless(
     before_mm: NDArray[np.float64], after_mm: NDArray[np.float64], free: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """Tell which free dots are not at rest, or lie around such: the others need not move."""
+    from scipy.spatial import KDTree  # which takes a while to import
+
     tree = KDTree(before_mm)
     near = np.asarray(tree.query(before_mm, k=min(7, len(before_mm)))[0])
     spacing = near[:, 1:].mean(axis=1) if near.ndim == 2 else np.ones(1)
@@ -346,6 +343,8 @@ class _Sheet:
         self, position_mm: NDArray[np.float64], sizes: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the sizes that dots usually have at levels of darkness."""
+        from scipy.ndimage import median_filter  # a quarter of a second to import
+
         levels = np.linspace(0.0, 1.0, _LEVELS)
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / self.raster.pixel_mm
         under = self.raster.darkness_under(inside)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from stippler.drawing.line import Line
     from stippler.drawing.reference import Reference
+    from stippler.drawing.run import Holding
     from stippler.drawing.style import Style
     from stippler.stippling.beyond import Seen
 
@@ -68,6 +69,18 @@ class MetLines:
     line_of_dot: NDArray[np.int32]
     along_mm: NDArray[np.float64]
     may_join: NDArray[np.bool_]
+
+    def holding(self, line_of_dot: NDArray[np.integer], along_mm: NDArray[np.float64]) -> Holding:
+        """Return which lines hold dots by what the drawing calls them."""
+        import numpy as np
+
+        from stippler.drawing.dots import NO_CURVE
+        from stippler.drawing.run import Holding
+
+        on = line_of_dot >= 0
+        curve = np.full(len(line_of_dot), NO_CURVE, np.int32)
+        curve[on] = np.array(self.ids, np.int32)[line_of_dot[on]]
+        return Holding(curve, np.where(on, along_mm, 0.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

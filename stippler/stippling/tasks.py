@@ -14,6 +14,7 @@ from stippler.drawing.dots import FREE, ON_CURVE, Dots
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.line import ADHERE, Line
 from stippler.drawing.partition import Outline, Partition
+from stippler.drawing.run import Holding
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.beyond import seen_of
@@ -192,7 +193,11 @@ class AreaTask:
             position, radius = made.position_mm[mine], made.radius_mm[mine]
             position.flags.writeable = radius.flags.writeable = False
             lack = made.shortfall if k == self.areas[0] else None
-            one = replace(made, position_mm=position, radius_mm=radius, shortfall=lack)
+            held = made.holding
+            if held is not None:
+                held = Holding(held.curve[mine], held.along_mm[mine])
+            one = replace(made, position_mm=position, radius_mm=radius, shortfall=lack,
+                          holding=held)  # fmt: skip
             found.append((k, one))
         return tuple(found)
 
@@ -264,7 +269,8 @@ def stippling(
     is_page = PAGE_AREA in areas and cut is part and part.area >= (1.0 - _WHOLE) * whole
     is_page &= not pieces
     parts = () if is_page else (cut,)
-    task = Task(style, reference, parts_mm=parts, standing=standing,
+    lines = lines_met(drawing, dots.take(fixed)) if drawing.lines else None
+    task = Task(style, reference, parts_mm=parts, standing=standing, lines=lines,
                 neighbours_mm=dots.position_mm[others], pieces_mm=pieces,
                 seen_mm=() if cut is not part else seen)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], partition)

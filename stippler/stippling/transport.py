@@ -16,9 +16,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
-from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
 from shapely import contains_xy
 from shapely.geometry import MultiPolygon, Polygon
 
@@ -175,6 +172,8 @@ def _unevenness(
 
 def _shared_out(mass: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.intp]:
     """Make each part of the raster that hangs together want the dots it has; return the parts."""
+    from scipy.ndimage import label  # a quarter of a second to import
+
     mass[mass <= _EMPTY * mass.mean()] = 0.0
     parts, n_parts = label(mass > 0.0)
     n_dots = np.bincount(_under(at, parts), minlength=n_parts + 1)
@@ -227,6 +226,9 @@ def _solver(mass: NDArray[np.float64]) -> _Solve:
     It flows as easily as dots are dense. The matrix is factored once; unlike conjugate gradients
     that gives the same result for any number of threads.
     """
+    from scipy.sparse import csc_matrix, diags  # these, too
+    from scipy.sparse.linalg import splu
+
     number = np.arange(mass.size).reshape(mass.shape)
     first: list[NDArray[np.intp]] = []
     second: list[NDArray[np.intp]] = []

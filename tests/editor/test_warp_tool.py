@@ -144,3 +144,23 @@ def test_patterns_of_the_areas_are_bent_too(desk):
     assert np.abs(now[inside] - warp.apply(before[inside])).max() < 0.1
     document.undo()
     assert document.drawing.patterns[k] == pattern
+
+
+def test_borders_are_shown_where_they_will_be(desk):
+    tool, document = WarpTool(), desk.document
+    tool.set("what", "areas")
+    start = grip(tool, desk, 6)
+    held = tool.begin(Pressed(LEFT, *start), desk)
+    assert not held.overlay.has_borders  # nothing has moved
+    end = (start[0] + 4, start[1] - 3)
+    held = held.take(Moved(*end), desk)
+    overlay = held.overlay
+    assert overlay.has_borders
+    shown = shapely.Polygon(overlay.paths[0].points_mm)
+    before = document.drawing.areas[1].outline_mm
+    assert shown.symmetric_difference(before).area > 5
+    held.take(Released(LEFT, *end), desk)
+    after = document.drawing.areas[1].outline_mm
+    assert shown.symmetric_difference(after).area < 0.01 * after.length
+    rings = [shapely.LinearRing(p.points_mm) for p in overlay.paths if len(p.points_mm) > 3]
+    assert any(r.hausdorff_distance(after.exterior) < 0.1 for r in rings)

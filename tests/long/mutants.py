@@ -9,7 +9,8 @@
 Each fault (`tests.long.faults`) is judged in a process of its own by the tests that go through its
 lines, quickest first, until one fails. A fault that runs out of time or memory is noticed. What is
 known stays in FILE and FILE.tests, so that a run can go on, on another day too: a fault counts as
-judged as long as the function that it lies in stays as it is. `tests/long/judged.jsonl` is a FILE.
+judged as long as the function that it lies in stays as it is. `tests/long/judged.jsonl` is a FILE;
+`tests/long/equivalent.tsv` says which faults change nothing, and why.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def main(words: Sequence[str]) -> None:
         chosen = random.Random(seed).sample(all_faults(), int(words[2]))
         _judge_all([f for f in chosen if f.key not in done], file)
     elif what == "again":
-        alive = {r["key"] for r in _results(file) if r["end"] != "noticed"}
+        alive = {r["key"] for r in _results(file) if r["end"] != "noticed"} - _equivalent().keys()
         _judge_all([f for f in all_faults() if f.key in alive], file)
     print_score(file)
 
@@ -294,14 +295,25 @@ def _results(file: Path) -> list[dict[str, Any]]:
     ]
 
 
+def _equivalent() -> dict[str, str]:
+    """Return why some faults change nothing that anyone could notice, by their keys."""
+    lines = Path(__file__).with_name("equivalent.tsv").read_text().splitlines()
+    return dict(line.split("\t", 1) for line in lines)
+
+
 def print_score(file: Path) -> None:
     """Print how many faults were noticed in each folder, and those that were not."""
-    results = _results(file)
+    known = _equivalent()
+    results = [
+        {**r, "end": "equivalent" if r["end"] == "survived" and r["key"] in known else r["end"]}
+        for r in _results(file)
+    ]
     for folder in FOLDERS:
         ends = Counter(r["end"] for r in results if r["path"].startswith(folder))
-        total = sum(ends.values())
+        total = ends.total() - ends["equivalent"]
         if total:
-            print(f"{folder}: {ends['noticed']} of {total} ({ends['noticed'] / total:.1%}) {ends}")
+            share = f"{ends['noticed']} of {total} ({ends['noticed'] / total:.1%})"
+            print(f"{folder}: {share}, beside {ends['equivalent']} that change nothing")
     for r in sorted(results, key=lambda r: (r["path"], r["line"])):
         if r["end"] != "noticed":
             print(f"{r['path']}:{r['line']} {r['what']}: {r['end']}")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import shapely
+from scipy.spatial import HalfspaceIntersection
 from shapely.geometry import MultiPoint, Point, Polygon, box
 
 
@@ -81,6 +82,14 @@ def half_planes(points: np.ndarray, polygon: Polygon) -> list[Polygon]:
     cells = shapely.voronoi_polygons(MultiPoint(points), extend_to=around)
     tree = shapely.STRtree(cells.geoms)
     return [cells.geoms[tree.query(Point(p), predicate="intersects")[0]] for p in points]
+
+
+def cell_by_qhull(point: np.ndarray, others: np.ndarray) -> Polygon:
+    """One Voronoi cell, within 100 of its dot, as Qhull meets half-planes."""
+    normal = np.vstack([others - point, np.vstack([np.eye(2), -np.eye(2)])])
+    offset = np.r_[0.5 * ((others - point) ** 2).sum(axis=1), np.full(4, 100.0)]
+    corners = HalfspaceIntersection(np.c_[normal, -offset], np.zeros(2)).intersections
+    return MultiPoint(corners + point).convex_hull
 
 
 def cut_one_by_one(points: np.ndarray, polygon: Polygon) -> list[Polygon]:

@@ -12,6 +12,7 @@ from shapely.geometry import Point, Polygon, box
 from stippler.kernels.machine import pool
 from stippler.stippling.relax import DensityField, Relaxation
 from tests.stippling.shapes import (
+    cell_by_qhull,
     comb,
     cut_one_by_one,
     half_planes,
@@ -145,6 +146,30 @@ def test_a_cell_of_a_thousand_corners():
         np.vstack([[[0.5, 0.5]], np.c_[0.5 + r * np.cos(a), 0.5 + r * np.sin(a)]]),
         box(0, 0, 1, 1),
     )
+
+
+@SETTINGS
+@given(
+    seed=st.integers(0, 10**6), n=st.integers(70, 400), noise=st.sampled_from([0, 1e-9, 1e-4, 0.1]),
+    radius=st.sampled_from([0.2, 0.6, 0.99, 1.5]), is_square=st.booleans(),
+)  # fmt: skip
+def test_cells_of_very_many_corners(seed, n, noise, radius, is_square):
+    rng = np.random.default_rng(seed)
+    a = rng.random() + np.arange(n) * 2 * np.pi / n
+    shape = box(0, 0, 1, 1) if is_square else Point(0.5, 0.5).buffer(0.55, quad_segs=5)
+    middle = np.array([0.5, 0.5]) if seed % 3 else rng.uniform(0.2, 0.8, 2)
+    r = 0.5 * radius * (1 + noise * rng.standard_normal(n))
+    ring = middle + np.c_[r * np.cos(a), r * np.sin(a)]
+    behind = middle + 1.7 * (ring[::3] - middle)  # in the directions of others
+    dots = np.vstack([[middle], ring, behind])
+    dots = dots[shapely.contains_xy(shape, dots[:, 0], dots[:, 1])]
+    engine = Relaxation(dots, shape)
+    areas, spacing2 = engine.cell_areas(), shape.area / len(dots)
+    assert areas.sum() == pytest.approx(shape.area, rel=1e-10)
+    cell = cell_by_qhull(dots[0], dots[1:]).intersection(shape)
+    assert areas[0] == pytest.approx(cell.area, abs=TOLERANCE * spacing2)
+    off = np.abs(engine.centroids()[0] - [cell.centroid.x, cell.centroid.y])
+    assert off.max() < TOLERANCE * math.sqrt(spacing2)
 
 
 @SETTINGS

@@ -1,6 +1,7 @@
 """Lines by hand: pen, freehand, moving, their panel, rows of dots."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -194,3 +195,22 @@ def test_relaxing_spreads_dots_on_lines_and_leaves_them_there(lines):
     assert labels[-2:] == ["Crowd", "Relax all"]  # one step, which is undone as one
     host.key("z", ctrl=True)
     assert np.allclose(np.sort(document(lines).dots.parameter[rows]), np.linspace(1.0, 4.0, 12))
+
+
+def test_filling_lines_dots_up(lines):
+    host, session = lines.host, lines.app.session
+    host.click((500, 300))
+    host.click((800, 300))
+    host.key("enter")
+    (k,) = table(lines)
+    lines.app.editor.lines.change([k], meeting="adhere", reach_mm=2.0)
+    before = (document(lines).dots.constraint == ON_CURVE).sum()
+    session.filling = replace(session.filling, n_dots=20_000)
+    session.fill()
+    host.until(lambda: not session.busy, "filling")
+    dots = document(lines).dots
+    on = dots.constraint == ON_CURVE
+    assert on.sum() > before + 5
+    assert np.allclose(dots.position_mm[on], table(lines)[k].at(dots.parameter[on]), atol=1e-9)
+    host.key("z", ctrl=True)
+    assert (document(lines).dots.constraint == ON_CURVE).sum() == before

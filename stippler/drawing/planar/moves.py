@@ -93,6 +93,30 @@ def reshape(before: PlanarMap, paths: Mapping[int, Path]) -> Outcome:
     return _moved(before, changed)
 
 
+def follow(before: PlanarMap, paths: Mapping[int, Path]) -> Outcome:
+    """Give borders other paths whose ends may lie elsewhere; every border that meets there follows.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such border, or borders would then cross, or an area lose its extent.
+    """
+    places: dict[Place, Place] = {}
+    changed: dict[int, Arc] = {}
+    for k, path in paths.items():
+        if k not in before.arcs:
+            raise GeometryError("is not there", f"border {k}")
+        old = before.arcs[k]
+        changed[k] = Arc(path, old.left, old.right)
+        for a, b in zip(old.path.vertices[[0, -1]], path.vertices[[0, -1]], strict=True):
+            x, y, to_x, to_y = (int(v) for v in (*a, *b))
+            places[x, y] = (to_x, to_y)
+    for k, arc in _meeting(before, places) if places else ():
+        if k not in changed:
+            changed[k] = _at_places(arc, places)
+    return _moved(before, changed)
+
+
 def add_node(before: PlanarMap, arc: int, near_mm: tuple[float, float]) -> tuple[Outcome, int]:
     """Add a vertex to a border where it is nearest to a point; return also its index."""
     old = before.arcs[arc]

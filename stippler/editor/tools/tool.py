@@ -7,7 +7,7 @@ are made within a stroke of its document, so every state can be cancelled withou
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -111,7 +111,7 @@ class Path:
         What it stands for cannot be done; it is red.
     """
 
-    points_mm: tuple[Point, ...]
+    points_mm: Sequence[Sequence[float]]
     closed: bool = False
     dashed: bool = False
     refused: bool = False
@@ -136,11 +136,18 @@ class Tip:
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """What lies over the page and is no part of it."""
+    """What lies over the page and is no part of it.
+
+    Attributes
+    ----------
+    has_borders : bool
+        Its paths show all borders of areas; those of the drawing are not drawn besides.
+    """
 
     paths: tuple[Path, ...] = ()
     handles: tuple[Handle, ...] = ()
     tip: Tip | None = None
+    has_borders: bool = False
 
 
 NOTHING = Overlay()

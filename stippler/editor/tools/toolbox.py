@@ -202,7 +202,12 @@ class Toolbox:
             lines=self.lines,
         )
         own, held = self.tool.overlay(sight), self.state.overlay
-        return Overlay(own.paths + held.paths, own.handles + held.handles, held.tip or own.tip)
+        return Overlay(
+            own.paths + held.paths,
+            own.handles + held.handles,
+            held.tip or own.tip,
+            has_borders=held.has_borders,
+        )
 
     def take(
         self,

@@ -20,6 +20,7 @@ from stippler.editor.tools.tool import (
     RESTING,
     Desk,
     Overlay,
+    Path,
     Point,
     Sight,
     Tool,
@@ -28,6 +29,7 @@ from stippler.editor.tools.tool import (
 from stippler.errors import GeometryError
 
 if TYPE_CHECKING:
+    from stippler.drawing.bend_areas import ShownBorders
     from stippler.drawing.deformation import Deformation
     from stippler.drawing.document import Document
     from stippler.drawing.line import Line
@@ -37,6 +39,7 @@ _NEAR_PX = 9.0
 _SUFFERED = 0.1  # of a dot's room, by which it has to have changed
 _MOST_RELAXED = 20_000
 _TURNS = 3
+_APART_PX = 3.0  # points of borders, while they are dragged
 
 
 @dataclass(slots=True)
@@ -149,7 +152,7 @@ class WarpTool(Tool):
 
 @dataclass(slots=True)
 class Warping(Drag):
-    """A point of the cage follows the pointer, and dots and lines with it; borders at the end."""
+    """A point of the cage follows the pointer, and dots, lines and what is shown of borders."""
 
     tool: WarpTool
     target: Target
@@ -160,7 +163,10 @@ class Warping(Drag):
     now: Deformation | None = None
     places: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
     radii: NDArray[np.float32] = field(default_factory=lambda: np.empty(0, np.float32))
+    rows: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
     lines: dict[int, Line] = field(default_factory=dict)
+    borders: ShownBorders | None = None
+    shown: tuple[Path, ...] = ()
 
     def _follow(self, at: Point, desk: Desk) -> None:
         from stippler.drawing.deformation import before_fold
@@ -172,24 +178,39 @@ class Warping(Drag):
             )
             if wanted.cage is not None:
                 wanted = before_fold(self.first, wanted, box)
-            self._show(wanted, desk.document)
+            self._show(wanted, desk)
         except GeometryError:
             return  # it stays as it was before
 
-    def _show(self, wanted: Deformation, document: Document) -> None:
-        rows = document.rows(self.target.ids)
+    def _show(self, wanted: Deformation, desk: Desk) -> None:
+        document = desk.document
         if not document.in_stroke:
-            document.begin("Warp")
-            self.places = document.dots.position_mm[rows].copy()
-            self.radii = document.dots.radius_mm[rows].copy()
-            self.lines = {k: lines_of(document)[k] for k in self.target.lines}
+            self._take_up(desk)
         for k, line in self.lines.items():
             set_line(document, k, line.deformed(wanted))
         at = wanted.apply(self.places)
         page = document.drawing.page
-        inside = ((at >= 0.0) & (at <= (page.width_mm, page.height_mm))).all(axis=1)
-        document.change("position_mm", rows[inside], at[inside])
+        inside = _on_page(at, page.width_mm, page.height_mm)
+        rows, at = (self.rows, at) if inside.all() else (self.rows[inside], at[inside])
+        document.change("position_mm", rows, at)
+        if self.borders is not None:
+            self.shown = tuple(Path(points.tolist()) for points in self.borders.bent(wanted))
         self.now = wanted
+
+    def _take_up(self, desk: Desk) -> None:
+        """Begin the stroke, and keep what is to be bent as it was."""
+        document = desk.document
+        document.begin("Warp")
+        self.rows = document.rows(self.target.ids)
+        self.places = document.dots.position_mm[self.rows].copy()
+        self.radii = document.dots.radius_mm[self.rows].copy()
+        self.lines = {k: lines_of(document)[k] for k in self.target.lines}
+        if self.target.areas and len(document.drawing.areas) > 1:
+            from stippler.drawing.area_edits import current_map
+            from stippler.drawing.bend_areas import ShownBorders
+
+            borders = current_map(document)
+            self.borders = ShownBorders.of(borders, self.target.areas, desk.mm(_APART_PX))
 
     def _let_go(self, desk: Desk) -> ToolState:
         document = desk.document
@@ -208,7 +229,7 @@ class Warping(Drag):
         self._keep_tone(document, self.now)
         for k in self.lines:
             meet(document, k, desk.say)
-        clear_zones(document, document.rows(self.target.ids))
+        clear_zones(document, document.rows(self.target.ids), desk.say)
         document.commit()
         return RESTING
 
@@ -229,16 +250,24 @@ class Warping(Drag):
 
     @property
     def overlay(self) -> Overlay:
-        """The cage as it is now, and the borders that will follow."""
+        """The cage as it is now, and the borders in place of those of the drawing."""
         bent = self.now or self.first
-        if self.way != bending.CAGE:
-            return NOTHING
-        return bending.overlay(bent, self.target.box, self.way, 1.0, self.grip)
+        cage = NOTHING
+        if self.way == bending.CAGE:
+            cage = bending.overlay(bent, self.target.box, self.way, 1.0, self.grip)
+        if not self.shown:
+            return cage
+        return Overlay((*self.shown, *cage.paths), cage.handles, has_borders=True)
 
     def cancel(self, desk: Desk) -> None:
         """Put it back."""
         if desk.document.in_stroke:
             desk.document.cancel()
+
+
+def _on_page(at: NDArray[np.float64], width: float, height: float) -> NDArray[np.bool_]:
+    x, y = at.T
+    return np.asarray((x >= 0.0) & (x <= width) & (y >= 0.0) & (y <= height))
 
 
 def stretch(bent: Deformation, at: NDArray[np.float64]) -> NDArray[np.float64]:

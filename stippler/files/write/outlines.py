@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import shapely
@@ -12,6 +11,7 @@ import shapely
 from stippler.drawing.planar.path import Path, pieces_of
 from stippler.drawing.planar.planar_map import PlanarMap
 from stippler.drawing.planar.rings import HalfEdge
+from stippler.files.write.xml_text import quoted
 
 
 def path_data(paths: Sequence[Path]) -> str:
@@ -40,7 +40,7 @@ def svg_of_areas(
         f' viewBox="0 0 {w:.9g} {h:.9g}" fill="none" stroke="black" stroke-width="0.1">'
     ]
     for k in areas.areas:
-        label = quoteattr((names or {}).get(k, f"area {k}"))
+        label = quoted((names or {}).get(k, f"area {k}"))
         rings = [ring_path(areas, ring) for part in areas.parts(k) for ring in part.rings]
         lines.append(f'<path id={label} fill-rule="evenodd" d="{path_data(rings)}"/>')
     return "\n".join([*lines, "</svg>\n"])

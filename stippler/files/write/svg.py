@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +27,7 @@ from stippler.files.write.sheet import (
     smallest_mm,
 )
 from stippler.files.write.sizes import by_size
+from stippler.files.write.xml_text import quoted
 from stippler.kernels.shapes import svg_text
 from stippler.kernels.shapes.number_text import number_rows
 
@@ -156,7 +156,7 @@ def _head(sheet: Sheet, *, paper: bool) -> bytes:
 
 def _layer(index: int, layer: Layer, decimals: int, round_dots: str) -> Iterator[bytes]:
     name = one_line(layer.name)
-    label, data = quoteattr(f"{index} {name}"), quoteattr(layer.name_for_xml)
+    label, data = quoted(f"{index} {name}"), quoted(layer.name_for_xml)
     color = "#fff" if layer.inverse else "#000"
     yield (
         f'<g id="layer-{index}" inkscape:groupmode="layer" inkscape:label={label} '

@@ -176,7 +176,7 @@ def _cut_lanes_by_cells(
     """Cut a cell by the dots of a run of grid cells of which some are crowds."""
     for column in range(first, last + 1):
         cell = spot.first_cell + row * spot.nx + column
-        if cell == skip:
+        if cell == skip or grid.cell_start[cell] == grid.cell_start[cell + 1]:
             continue
         if grid.tree_of_cell[cell] >= 0:
             if least <= APART:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from stippler.kernels.cells.big_cells import MANY, cut_big_cell_by_ring
 from stippler.kernels.cells.border import (
     NOWHERE,
     border_distance,
@@ -30,7 +31,7 @@ from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
 from stippler.kernels.cells.grid import seen_distance, spot_of
 from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
-from stippler.kernels.cells.row_search import SWEEP_FROM, sweep_rows
+from stippler.kernels.cells.row_search import SWEEP_FROM, cut_far_corners, sweep_rows
 from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
 from stippler.kernels.cells.tables import (
     F8,
@@ -224,7 +225,10 @@ def _cell_of_dot(
             elif ring == 0:
                 m = cut_lanes_by_crowd(U, V, N, m, dots, grid, spot.x, spot.y, crowd)
             else:
-                m = cut_lanes_by_ring(U, V, N, m, dots, grid, spot, ring, crowd)
+                if ring == 2 and crowd >= 0:
+                    m = cut_far_corners(U, V, N, m, dots, grid, spot)
+                if m != OVERFLOW:
+                    m = cut_lanes_by_ring(U, V, N, m, dots, grid, spot, ring, crowd)
             if m == OVERFLOW:
                 is_packed = False
                 m = start_cell(pads.cell, spot.x0, spot.y0, spot.x1, spot.y1)
@@ -232,7 +236,10 @@ def _cell_of_dot(
                 continue
             reach2 = reach2_of(U, V, m)
         else:
-            m = cut_cell_by_ring(pads.cell, m, dots, grid, spot, ring)
+            if pads.cell.shape[1] > MANY:
+                m = cut_big_cell_by_ring(pads, m, dots, grid, spot, ring)
+            else:
+                m = cut_cell_by_ring(pads.cell, m, dots, grid, spot, ring)
             if m == OVERFLOW:
                 break
             reach2 = reach2_of_cell(pads.cell, m)

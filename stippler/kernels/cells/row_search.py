@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from stippler.kernels.cells.cell_trees import APART, cut_lanes_by_span
+from stippler.kernels.cells.grid import column_of
 from stippler.kernels.cells.tables import Dots, Grid, Spot
 from stippler.kernels.cells.voronoi import OVERFLOW
 from stippler.kernels.machine.jit import ZERO, inline, inner
@@ -19,6 +20,11 @@ from stippler.kernels.machine.simd import get, reach2_of
 
 SWEEP_FROM = 4
 """Ring from which rows take the place of rings."""
+
+_MANY = 1024
+"""Dots of the rows seen after which corners far off are looked at first."""
+
+_MOST_LOOKS = 48
 
 
 @inline
@@ -38,12 +44,44 @@ def _columns_that_cut(
 
 
 @inner
+def cut_far_corners(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot) -> int:
+    """Cut a dot's cell by the dots around its far corners; return its corners, or `OVERFLOW`.
+
+    Where very many dots lie all but on the circle about a corner, rows would bring each of them
+    before the one that takes the corner away. By a dot that is not near the dot's own place may be
+    cut twice: a corner on its bisector is not rounded across it then.
+    """
+    inverse, k, looks = 1.0 / spot.h, ZERO, ZERO
+    reach2, far2 = reach2_of(U, V, m), 36.0 * spot.h * spot.h
+    while k < m and looks < _MOST_LOOKS:
+        u, v = get(U, k), get(V, k)
+        k += 1
+        if u * u + v * v < max(far2, reach2 / 256.0):
+            continue
+        looks += 1
+        column = column_of(spot.x + u, spot.gx, inverse, spot.nx)
+        row = column_of(spot.y + v, spot.gy, inverse, spot.ny)
+        p, q = max(column - 1, 0), min(column + 1, spot.nx - 1)
+        before = m
+        for near in range(max(row - 1, 0), min(row + 2, spot.ny)):
+            m = cut_lanes_by_span(
+                U, V, N, m, dots, grid, spot, near, p, q, APART, 4.0 * reach2, ZERO - 1
+            )  # fmt: skip
+            if m == OVERFLOW:
+                return m
+        if m != before or get(U, k - 1) != u or get(V, k - 1) != v:
+            k, reach2 = ZERO, reach2_of(U, V, m)
+    return m
+
+
+@inner
 def sweep_rows(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot) -> int:
     """Cut a dot's cell by all dots from ring `SWEEP_FROM` on.
 
     Returns the cell's corners, or `OVERFLOW`.
     """
     h, slack, nx = spot.h, grid.slack, spot.nx
+    n_seen = ZERO
     for k in range(2 * spot.ny + 1):
         away = (k + 1) >> 1
         row = spot.iy + away if k & 1 else spot.iy - away
@@ -68,9 +106,14 @@ def sweep_rows(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spo
             elif is_seen:
                 p = max(first, spot.ix + SWEEP_FROM)
             if p <= q and m != OVERFLOW:
+                a = spot.first_cell + row * nx
+                n_seen += grid.cell_start[a + q + 1] - grid.cell_start[a + p]
                 m = cut_lanes_by_span(
                     U, V, N, m, dots, grid, spot, row, p, q, APART, limit, ZERO - 1
                 )
+        if n_seen > _MANY and m != OVERFLOW:
+            n_seen = ZERO - (ZERO + (1 << 62))
+            m = cut_far_corners(U, V, N, m, dots, grid, spot)
         if m == OVERFLOW:
             break
     return m

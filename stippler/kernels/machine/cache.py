@@ -48,6 +48,7 @@ def module_folder(source: str) -> Path:
     return cache_root() / f"{path.stem}-{_digest(_with_imports(path))}"
 
 
+@cache
 def source_digest(source: str) -> str:
     """Return a digest of what the kernels of one source file are made of, wherever it lies."""
     return _content_digest(tuple(sorted(_with_imports(Path(source)))))
@@ -80,10 +81,18 @@ def _with_imports(path: Path) -> set[Path]:
             continue
         if source not in found:
             found.add(source)
-            for name in _IMPORT.findall(_text(source)):
-                module = _KERNELS / name.replace(".", "/")
-                todo += module.glob("*.py") if module.is_dir() else [module.with_suffix(".py")]
+            todo += _imported(source)
     return found
+
+
+@cache
+def _imported(source: Path) -> tuple[Path, ...]:
+    """Return the kernel files that one file imports."""
+    found: list[Path] = []
+    for name in _IMPORT.findall(_text(source)):
+        module = _KERNELS / name.replace(".", "/")
+        found += module.glob("*.py") if module.is_dir() else [module.with_suffix(".py")]
+    return tuple(found)
 
 
 def _digest(sources: Iterable[Path]) -> str:

@@ -47,10 +47,11 @@ class OverPage:
     def draw_marks(self, area: Rect, ratio: float, *, borders: bool) -> None:
         """Draw what the tool shows, and the borders of areas if asked or if the tool needs them."""
         tool, document = self._toolbox.tool, self._session.document
+        overlay = self._overlay
         seen = borders or (tool is not None and tool.shows_areas)
-        if document is not None and seen:
+        if document is not None and seen and not overlay.has_borders:
             self._areas.draw(document, self._toolbox.areas, self._view, area, ratio)
-        draw_overlay(self._overlay, self._view, area, self._gui.scale, ratio)
+        draw_overlay(overlay, self._view, area, self._gui.scale, ratio)
 
     def draw_beside(self, widgets: Widgets, area: Rect, ratio: float) -> None:
         """Draw the picture's half, the rulers and the navigator."""

@@ -10,6 +10,7 @@ from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.reference import Picture, Reference
+from stippler.drawing.style import Style
 from stippler.errors import DrawingFileError
 from stippler.files.native import arrays
 from stippler.files.native.container import read_container, write_container
@@ -132,3 +133,19 @@ def test_a_journal_counts_its_own_steps():
         ("step", 1), ("step", 2), ("undone", 1), ("undone", 0), ("undone", 0), ("redone", 0),
         ("redone", 1),
     ]  # fmt: skip
+
+
+def test_the_limits_are_those_that_are_told():
+    assert Limits() == Limits(4 << 30, 2 << 30, 4 << 30, 4096, 1100.0, 256 << 20)
+
+
+def test_a_draft_takes_the_place_of_one_that_was_being_made():
+    document = Document(Drawing.blank(Page(40.0, 30.0)))
+    document.begin_draft("Stipple", 0, Style())
+    document.draft(np.full((7, 2), 5.0), np.full(7, 0.2, np.float32))
+    document.draft(np.full((7, 2), 6.0), np.full(7, 0.2, np.float32))
+    document.begin_draft("Stipple", 0, Style(seed=2))
+    assert len(document.dots) == 0
+    document.draft(np.full((3, 2), 5.0), np.full(3, 0.2, np.float32))
+    document.end_draft()
+    assert len(document.dots) == 3

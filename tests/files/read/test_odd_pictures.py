@@ -250,3 +250,20 @@ def test_what_a_caller_asks_amiss_is_no_fault_of_the_file(tmp_path):
         read_picture(path, tone="louder", width_mm=9.0)
     with pytest.raises(ParameterError, match="tone"):
         picture_of_bytes(path.read_bytes(), "one.png", "louder")
+
+
+def test_colours_beyond_the_alpha_they_were_multiplied_by_are_white():
+    samples = np.zeros((1, 3, 4), np.uint8)
+    samples[0] = [(100, 100, 100, 100), (150, 150, 150, 100), (50, 50, 50, 100)]
+    data = written(samples, photometric="rgb", extrasamples=["assocalpha"])
+    found = tiff_dark(data)[0]
+    assert found[:2].tolist() == [0.0, 0.0]
+    assert found[2] == pytest.approx((1 - to_linear(0.5)) * 100 / 255, abs=2e-3)
+
+
+def test_a_picture_keeps_the_bytes_of_its_file(tmp_path):
+    path = tmp_path / "one.png"
+    Image.new("L", (4, 3), 90).save(path)
+    found = read_picture(path, tone="linear", width_mm=9.0).source
+    assert found.data == path.read_bytes()
+    assert picture_of_bytes(path.read_bytes(), "one.png", "linear").data == path.read_bytes()

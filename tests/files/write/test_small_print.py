@@ -13,7 +13,7 @@ from stippler.drawing.drawing import Drawing, Page
 from stippler.errors import OutputError, ParameterError
 from stippler.files.checks import SHEET_STEPS, Process, check, gain_of
 from stippler.files.presses import Press
-from stippler.files.write import course, dxf, eps, estimate, pen_paths, plate, raster, tiff
+from stippler.files.write import course, dxf, eps, estimate, pen_paths, plate, raster, svg, tiff
 from stippler.files.write.formats import FORMATS, TIFF
 from stippler.files.write.lettering import text_lines
 from stippler.files.write.names import one_line, plain, unique
@@ -255,7 +255,7 @@ def test_paths_are_ordered_by_where_they_are_and_turned_to_where_the_pen_is():
 def test_a_way_of_the_pen_is_drawn_pixel_by_pixel_and_what_is_far_away_is_not_tried():
     xy = np.array([(0.0, 0.0), (9.0, 0.0), (9.0, 6.0), (500.0, 6.0), (500.0, 9.0), (-7.5, 3.0)])
     at_s = np.arange(6.0)
-    points, times = course._samples(xy, at_s, np.array([False, *[True] * 5]), (10, 10))
+    points, times = course._samples(xy, at_s, np.array([False, *[True] * 5]), (10, 30))
     assert np.all(np.diff(times[times <= 3]) >= 0)
     first = (times > 0) & (times <= 1)
     assert points[first][-1].tolist() == [9.0, 0.0]
@@ -279,7 +279,8 @@ def test_pixels_of_a_window_are_within_the_file_and_at_least_one():
     ("edges", "wanted"),
     [
         ([0.0, 2.0, 4.0], [0.5, 2.5]), ([0.0, 1.5, 3.0], [(0 + 0.5) / 1.5, (0.5 + 2) / 1.5]),
-        ([0.0, 0.5, 1.0, 1.5], [0, 0, 1]), ([3.0, 4.0], [3]), ([1.0, 2.0, 3.0, 4.0], [1, 2, 3]),
+        ([0.0, 0.5, 1.0, 1.5], [0, 0, 1]), ([1.25, 1.75, 2.25], [1, 2]),
+        ([0.0, 1.5], [1 / 3]), ([3.0, 4.0], [3]), ([1.0, 2.0, 3.0, 4.0], [1, 2, 3]),
     ],
 )  # fmt: skip
 def test_rows_are_averaged_by_area_or_shown_as_they_are(edges, wanted):
@@ -341,3 +342,42 @@ def test_rows_of_a_patch_are_moved_by_half_a_step_to_the_right():
 
 def test_a_press_loses_nothing_unless_it_says_so():
     assert Press("newspaper", 0.02).least_dot_mm == 0.0
+
+
+@pytest.mark.parametrize(
+    "roughness", [0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+)
+def test_every_dot_is_drawn_once_in_an_svg_however_rough(roughness):
+    dots = some(5)
+    dots.roughness[:] = roughness
+    for edge, _ in svg.SEGMENTS:
+        dots.roughness[0] = max(min(edge, 1.0), 0.0)
+        text = b"".join(svg.chunks(sheet(Layer("dots", dots)), {"paper": False})).decode()
+        n = text.count("<circle") + sum(d.count("M") for d in re.findall(r' d="([^"]*)"', text))
+        assert n == 5
+
+
+def test_a_scaled_sheet_begins_where_it_began():
+    found = sheet().scaled(2.5)
+    assert (found.width_mm, found.height_mm) == (100.0, 50.0)
+    dots = found.layers[0].dots
+    assert dots.position_mm == pytest.approx(some().position_mm * 2.5)
+    assert dots.radius_mm == pytest.approx(some().radius_mm * 2.5)
+
+
+def test_taps_of_a_plotter_stand_in_the_middle_of_their_dots_and_have_their_ink():
+    dots = some(9)
+    text = b"".join(svg.chunks(sheet(Layer("dots", dots)), {"round_dots": "taps"})).decode()
+    found = re.findall(r'stroke-width="([\d.]+)" d="M([-\d.]+) ([-\d.]+)h([\d.]+)"', text)
+    wide, x, y, length = np.array(found, float).T
+    assert np.column_stack([x + length / 2, y]) == pytest.approx(dots.position_mm, abs=2e-3)
+    ink = math.pi * (wide / 2) ** 2 + wide * length
+    assert ink == pytest.approx(math.pi * dots.radius_mm.astype(float) ** 2, rel=5e-3)
+
+
+def test_plotters_are_set_as_most_people_want_them():
+    (gcode,) = (one for one in FORMATS if ".gcode" in one.endings)
+    usual = {option.name: option.default for option in gcode.options}
+    assert (usual["pen_width"], usual["sort"], usual["lift_time"]) == (0.3, True, 0.15)
+    lift = next(option for option in gcode.options if option.name == "lift_time")
+    assert (lift.low, lift.high) == (0, 60)
