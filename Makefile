@@ -48,7 +48,7 @@ soak: $(VENV)/ready-dev
 	$(BIN)/python -m benchmarks.soak $(MINUTES)
 
 COVERING := tests/drawing tests/files tests/corpus tests/fuzz tests/regressions tests/editor tests/jobs \
-	tests/analysis $(wildcard tests/stippling/test_*line*.py) $(wildcard tests/stippling/test_*border*.py) \
+	tests/brushes tests/analysis $(wildcard tests/stippling/test_*line*.py) $(wildcard tests/stippling/test_*border*.py) \
 	$(wildcard tests/stippling/test_scale*.py) tests/stippling/test_patterns.py
 coverage: $(VENV)/ready-dev
 	@$(PIP) --group coverage

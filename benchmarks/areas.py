@@ -16,8 +16,11 @@ from stippler.drawing.planar import edits, moves
 from stippler.drawing.planar.path import Path
 from stippler.drawing.planar.planar_map import OUTSIDE, Arc, PlanarMap
 from stippler.drawing.planar.swept import dots_in_strip
+from stippler.stippling.initial_points import random_in
+from stippler.stippling.relax import Relaxation
 
 SIZE = (200.0, 150.0)
+_SETTLING = 60
 
 
 def figures(*, quick: bool = False) -> list[Figure]:
@@ -39,8 +42,45 @@ def figures(*, quick: bool = False) -> list[Figure]:
         Figure("one border of 300 areas moved, 200k dots", best_ms(edit, repeats), "ms", 30, 5),
         Figure("the same as a step, to the buffers of the next frame",
                step_ms(areas, dots, repeats), "ms", 30, 5),
+        *settled_figures(5_000 if quick else 50_000, 3 if quick else 9),
         *picture_figures(3 if quick else 5),
     ]  # fmt: skip
+
+
+def settled_figures(n_dots: int, steps: int) -> list[Figure]:
+    """Time a settled step of dots in many areas against one of as many in a square, in turns."""
+    whole = shapely.box(0, 0, 100, 100)
+    square = _settled([whole], n_dots)
+    out = []
+    for n, stretch, reach in ((200, 1.25, 1.5), (2_200, 1.6, 2.5)):
+        seeds = shapely.multipoints(np.random.default_rng(4).random((n, 2)) * 100.0)
+        cells = shapely.voronoi_polygons(seeds, extend_to=whole).geoms
+        many = _settled([cell.intersection(whole) for cell in cells], n_dots)
+        pairs = [(_step_s(many), _step_s(square)) for _ in range(steps)]
+        mine, theirs = (min(times) for times in zip(*pairs, strict=True))
+        name = f"a settled step of {n_dots // 1000}k dots in {n:,} areas, over a square"
+        note = f"{1e3 * mine:.1f} over {1e3 * theirs:.1f} ms"
+        out.append(Figure(name, mine / theirs, "x", reach, stretch, note=note))
+    return out
+
+
+def _settled(cells: list[shapely.Polygon], n_dots: int) -> Relaxation:
+    """Return dots in some polygons after so many steps of Lloyd's that few cells change."""
+    total = sum(cell.area for cell in cells)
+    counts = [max(1, round(n_dots * cell.area / total)) for cell in cells]
+    dots = [random_in(cell, k, 1) for cell, k in zip(cells, counts, strict=True)]
+    engine = Relaxation(
+        np.concatenate(dots), cells, compartment_of_dot=np.repeat(np.arange(len(cells)), counts)
+    )
+    engine.run(_SETTLING)
+    return engine
+
+
+def _step_s(engine: Relaxation) -> float:
+    """Return the processor time of a step."""
+    start = time.process_time()
+    engine.step()
+    return time.process_time() - start
 
 
 def step_ms(areas: PlanarMap, dots: NDArray[np.float64], repeats: int) -> float:

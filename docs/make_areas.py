@@ -1,6 +1,6 @@
 """Make the pictures of `docs/areas.md`: the window with areas, the paper's Fig. 2, and borders.
 
-``python docs/make_areas.py [--only window|eye|borders]``; without a display, some minutes.
+``python docs/make_areas.py [--only window|eye|borders|pieces]``; without a display, some minutes.
 
 `docs/areas-eye.png` is what Fig. 2 of Deussen et al. (2000) shows: the eye and its surroundings
 relaxed apart, so that the border between them is enhanced; left as one area, right as two.
@@ -19,11 +19,12 @@ from PIL import Image
 
 from stippler.api import process
 from stippler.app import App
-from stippler.drawing.area_edits import edit_areas
+from stippler.drawing.area_edits import edit_areas, map_of
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.planar import edits, moves
 from stippler.drawing.planar.path import Path as Outline
+from stippler.drawing.planar.policies import with_policy
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.ui.panels.layout import AREAS
@@ -37,7 +38,7 @@ SIDE_PX, SIDE_MM = 420, 70.0
 def main() -> None:
     """Make the pictures asked for."""
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--only", choices=("window", "eye", "borders"))
+    options.add_argument("--only", choices=("window", "eye", "borders", "pieces"))
     only = options.parse_args().only
     if only in (None, "window"):
         make_window(DOCS / "areas.png")
@@ -45,6 +46,8 @@ def main() -> None:
         make_eye(DOCS / "areas-eye.png")
     if only in (None, "borders"):
         make_borders(DOCS / "areas-borders.png")
+    if only in (None, "pieces"):
+        make_pieces(DOCS / "areas-pieces.png")
 
 
 def make_window(out: Path) -> None:
@@ -119,23 +122,50 @@ def make_borders(out: Path) -> None:
     Image.fromarray(np.hstack([drawn[0], gap, drawn[1], gap, drawn[2]])).save(out, optimize=True)
 
 
-def _halved(border: str) -> NDArray[np.uint8]:
-    """Return a piece of the ammonite drawn as two areas that meet in a slanting line."""
+def make_pieces(out: Path) -> None:
+    """Draw it with walls but for a piece that is seen through, and with that side made anew."""
+    drawn = [_halved("wall", "through"), _halved("wall", "through", again=True)]
+    gap = np.full((len(drawn[0]), 30), 255, np.uint8)
+    Image.fromarray(np.hstack([drawn[0], gap, drawn[1]])).save(out, optimize=True)
+
+
+def _halved(border: str, piece_is: str = "", *, again: bool = False) -> NDArray[np.uint8]:
+    """Return a piece of the ammonite drawn as two areas that meet in a slanting line.
+
+    The upper half of the line has a policy of its own; the left area may be made again, alone.
+    """
     whole = 1.0 - np.array(Image.open(SAMPLE).convert("L"), np.float32) / 255.0
     h, w = whole.shape
     piece = np.ascontiguousarray(whole[2 * h // 5 : 4 * h // 5, w // 5 : w // 5 + 2 * h // 5])
-    reference = Reference(0.15 + 0.75 * piece, SIDE_MM / 2)
+    contrast = 0.3 if piece_is else 0.75  # walls are seen best in pale tones
+    reference = Reference(0.15 + contrast * piece, SIDE_MM / 2)
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
     style = Style(n_dots=2_400, border=border)
     document = Document(Drawing.from_reference(reference, *nothing, style))
     w, h = reference.width_mm, reference.height_mm
-    half = Outline.polyline([(0, 0), (0.65 * w, 0), (0.35 * w, h), (0, h)], closed=True)
+    corners = [(0, 0), (0.65 * w, 0), (0.5 * w, 0.5 * h), (0.35 * w, h), (0, h)]
+    half = Outline.polyline(corners, closed=True)
     edit_areas(document, "Left", lambda areas: edits.add(areas, half))
+    if piece_is:
+        _say_of_upper(document, piece_is)
     drawing = process(document.drawing, sorted(document.drawing.areas))
+    if again:
+        drawing = process(drawing, 1)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "borders.png"
         drawing.save(path, dpi=350)
         return np.array(Image.open(path).convert("L"))
+
+
+def _say_of_upper(document: Document, policy: str) -> None:
+    """Give the upper piece of the border between the two areas a policy."""
+    k, arc = next(
+        (k, arc) for k, arc in map_of(document.drawing).arcs.items()
+        if {arc.left, arc.right} == {0, 1}
+    )  # fmt: skip
+    first = 0 if arc.start[1] < arc.end[1] else 1
+    runs = {k: [(first, first + 1, policy)]}
+    edit_areas(document, "Border", lambda areas: edits.Outcome(with_policy(areas, runs)))
 
 
 if __name__ == "__main__":

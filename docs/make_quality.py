@@ -73,7 +73,7 @@ for the true union of the discs; the column *exact* is `tone_rmse` against that 
 finely enough for the difference not to matter.
 
 Where a picture runs over the edge of the page, dots relaxed on the page alone would line up half a
-spacing inside its edge; so they are relaxed on a page with a bleed and then trimmed. The edge then
+spacing inside its edge; so they are relaxed on a sheet with a bleed and then trimmed. The edge then
 cuts dots as chance will have it, and the ink along it is too dark here and too light there, over a
 few dots; so those dots move across it, by six tenths of their radius at most, until the ink along
 the edge meets the tone from end to end. Pairs closer than half as far as their seventh neighbours

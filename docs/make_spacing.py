@@ -80,7 +80,7 @@ def main() -> None:
         for path in photographs:
             image = Image.open(path).convert("RGB")
             image.thumbnail((900, 900))
-            made.append(drawn(image, 110, dots=12_000, width=90))
+            made.append(drawn(image, 110, width=90))
             made[-1].thumbnail((390, 390), Image.Resampling.LANCZOS)
         rows = [made[k : k + 5] for k in range(0, len(made), 5)]
         sheet(rows).save(HERE / "photographs.png", optimize=True)

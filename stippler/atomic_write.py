@@ -278,6 +278,8 @@ def _target(path: Path) -> Path:
     if not stat.S_ISDIR(target.parent.stat().st_mode):
         raise NotADirectoryError(errno.ENOTDIR, "its folder is a file")
     if before is not None and not os.access(target, os.W_OK):
+        if hasattr(os, "statvfs") and os.statvfs(target).f_flag & os.ST_RDONLY:
+            raise OSError(errno.EROFS, "is on a read-only disk")
         raise PermissionError(errno.EACCES, "may not be written")
     return target
 

@@ -10,6 +10,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -303,3 +304,16 @@ def test_a_pipe_with_a_name(tmp_path):
     write(tmp_path / "pipe.svg")
     reader.join()
     assert read == [b"new"]
+
+
+def test_a_file_on_a_disk_that_became_read_only_is_told_as_such(tmp_path, monkeypatch):
+    path = tmp_path / "a.txt"
+    path.write_text("before")
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(OutputError, match="may not be written"), replacing(path):
+        pass
+    status = SimpleNamespace(f_flag=os.ST_RDONLY)
+    monkeypatch.setattr(os, "statvfs", lambda _: status)
+    with pytest.raises(OutputError, match="read-only disk; choose a folder"), replacing(path):
+        pass
+    assert path.read_text() == "before"

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
 import stippler
@@ -226,3 +227,25 @@ def test_relaxing_with_lines_is_the_same_in_the_window_and_by_its_task(picture, 
     assert np.array_equal(ours.curve[rows][on], made.holding.curve[on])
     assert np.array_equal(ours.parameter[rows][on], made.holding.along_mm[on])
     assert (ours.constraint[rows][on] == ON_CURVE).all()
+
+
+def test_starting_anew_meets_the_lines_that_were_drawn(picture) -> None:
+    session = session_of(Style(n_dots=N_DOTS, iterations=N_STEPS))
+    session.open(picture)
+    ended(session)
+    document = session.document
+    assert document is not None
+    document.begin("Lines")
+    for line in lined(picture).lines.values():
+        document.add("line", line)
+    document.commit()
+    session.start()
+    dots = ended(session)
+    assert session.document is document
+    off = document.drawing.lines[2]
+    away = shapely.distance(
+        shapely.linestrings(off.path.points_mm),  # type: ignore[attr-defined]
+        shapely.points(dots.position_mm),
+    )
+    assert away.min() >= 0.1 + 0.3 - 1e-6
+    assert (dots.constraint == ON_CURVE).sum() > 5

@@ -101,25 +101,21 @@ def meet(document: Document, k: int, say: Callable[[str, str], None] | None = No
         return 0
     if len(held := rows_on(document, k)):
         release(document, held)
-    n_moved, n_gone = clear_zones(document, _near(document, line, line.distance_mm))
-    if n_gone and say is not None:
-        say(
-            f"{n_gone:,} dots found no place off {line.name or 'the line'} and were taken away",
-            INFO,
-        )
-    return n_moved
+    return clear_zones(document, _near(document, line, line.distance_mm), say)
 
 
-def clear_zones(document: Document, rows: Rows) -> tuple[int, int]:
-    """Move free dots out of the zones of all lines; return how many moved, how many had to go.
+def clear_zones(
+    document: Document, rows: Rows, say: Callable[[str, str], None] | None = None
+) -> int:
+    """Move free dots out of the zones of all lines; return how many moved.
 
-    One goes where there is no place that keeps all distances within its area.
+    Where no place keeps all distances within its area a dot is taken away, and that is said.
     """
     lines = document.meetings
     rows = rows[rows >= 0]
     rows = rows[document.dots.constraint[rows] == FREE]
     if lines is None or not len(rows):
-        return 0, 0
+        return 0
     before = document.dots.position_mm[rows].copy()
     inside = ~lines.are_off(before)
     rows, before = rows[inside], before[inside]
@@ -128,7 +124,10 @@ def clear_zones(document: Document, rows: Rows) -> tuple[int, int]:
     n_moved, lost = int((after != before).any(axis=1).sum()), rows[~lines.are_off(after)]
     n_before = len(document.dots)
     document.remove(lost)
-    return n_moved, n_before - len(document.dots)
+    n_gone = n_before - len(document.dots)
+    if n_gone and say is not None:
+        say(f"{n_gone:,} dots found no place off lines and were taken away", INFO)
+    return n_moved
 
 
 def _near(document: Document, line: Line, reach_mm: float) -> Rows:

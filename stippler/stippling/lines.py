@@ -25,6 +25,8 @@ Tone: TypeAlias = Callable[[Points], Points]
 """From places to how many dots they want, relatively."""
 
 _SAMPLES = 8  # of the tone, in a dot's part of a line
+_SAME_PLACE_MM = 1e-6
+_LEAST_TANGLE, _LOOKED_AT, _MOST_MET = 1000, 64, 300_000  # segments, and pairs of their boxes
 _FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 MOST_ROW = 1_000_000
 
@@ -185,9 +187,10 @@ def tone_along(reference: Reference | None) -> Tone | None:
 def crossings(lines: Sequence[Line]) -> list[tuple[int, float, int, float]]:
     """Return where lines cross: (line, arc length, other line, arc length), each pair once.
 
-    Where a line crosses itself it is its own other.
+    Where a line crosses itself it is its own other. In a tangle of hundred thousands of crossings
+    none is found.
     """
-    if not lines:
+    if not lines or _is_tangle(lines):
         return []
     shapes = np.array([shapely.linestrings(line.path.points_mm) for line in lines])
     a, b = shapely.STRtree(shapes).query(shapes, predicate="crosses")
@@ -203,18 +206,34 @@ def crossings(lines: Sequence[Line]) -> list[tuple[int, float, int, float]]:
     return [*found, *loops]
 
 
+def _is_tangle(lines: Sequence[Line]) -> bool:
+    """Tell by some of the segments whether there would be too many crossings to look at."""
+    ends = np.concatenate([line.segments()[:, :4] for line in lines]).reshape(-1, 2, 2)
+    if len(ends) < _LEAST_TANGLE:
+        return False
+    boxes = shapely.box(*ends.min(axis=1).T, *ends.max(axis=1).T)
+    some = boxes[:: max(len(boxes) // _LOOKED_AT, 1)]
+    met = len(shapely.STRtree(boxes).query(some)[0])
+    return (met / len(some) - 3.0) * len(boxes) / 2 > _MOST_MET  # beside its neighbours
+
+
 def _own_crossings(line: Line) -> list[tuple[float, float]]:
     """Return the arc lengths at which a line crosses itself, the lower first."""
     at, s = line.path.points_mm, line.arc_lengths()
     if shapely.is_simple(shapely.linestrings(at)):
         return []
     segments = shapely.linestrings(np.stack([at[:-1], at[1:]], axis=1))
-    a, b = shapely.STRtree(segments).query(segments, predicate="crosses")
-    once = np.flatnonzero(a < b)
-    once = once[np.lexsort((b[once], a[once]))]
-    a, b = a[once], b[once]
-    xy = shapely.get_coordinates(shapely.intersection(segments[a], segments[b]))
-    sides = (s[k] + np.hypot(*(xy - at[k]).T) for k in (a, b))
+    a, b = shapely.STRtree(segments).query(segments, predicate="intersects")
+    ends = line.is_closed & (a == 0) & (b == len(segments) - 1)
+    apart = np.flatnonzero((b - a > 1) & ~ends)  # those beside one another meet anyway
+    apart = apart[np.lexsort((b[apart], a[apart]))]
+    a, b = a[apart], b[apart]
+    met = shapely.intersection(segments[a], segments[b])
+    is_point = shapely.get_type_id(met) == 0
+    xy, a, b = shapely.get_coordinates(met[is_point]), a[is_point], b[is_point]
+    _, once = np.unique(np.round(xy / _SAME_PLACE_MM).astype(np.int64), axis=0, return_index=True)
+    once = np.sort(once)  # at a vertex several segments meet
+    sides = (s[k[once]] + np.hypot(*(xy[once] - at[k[once]]).T) for k in (a, b))
     return list(zip(*(side.tolist() for side in sides), strict=True))
 
 

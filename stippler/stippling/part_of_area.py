@@ -22,6 +22,8 @@ _QUARTER = 16  # edges of a quarter turn
 _OUT = 1.0 / math.cos(math.pi / (4 * _QUARTER))
 """A polygon around a circle, not in it: no dot comes nearer than it may."""
 
+_LONG, _CHUNK = 2000, 8  # points of a line that crosses itself, and of a piece of it
+
 _APART_MM = 2e-5
 """Polygons of a pattern that share an edge are parted by this; each bounds its own dots."""
 
@@ -48,7 +50,7 @@ def part_for_dots(drawing: Drawing, area: int, part: Shape) -> Shape:
     Raises
     ------
     GeometryError
-        If the area's pattern does not meet it.
+        If the area's pattern does not meet it, or lines leave no room in it.
     """
     shape = part
     if (laid := pattern_of(drawing, area)) is not None:
@@ -57,6 +59,9 @@ def part_for_dots(drawing: Drawing, area: int, part: Shape) -> Shape:
     zones = [zone_of(line) for line in _keeping_off(drawing) if _may_meet(line, shape)]
     if zones:
         shape = _joined([shapely.difference(shape, shapely.union_all(zones))])
+        if shape.is_empty:
+            name = drawing.areas[area].name if area in drawing.areas else str(area)
+            raise GeometryError("leave it no room", f"lines in area {name}", "keep off by less")
     return shape
 
 
@@ -112,8 +117,12 @@ def zone_of(line: Line) -> Shape:
     """Return what no dot may lie in: all within a line's distance of its edge, or a little more."""
     reach = (np.array(line.width_mm) / 2 + line.distance_mm) * _OUT
     if reach[0] == reach[1]:
-        axis = shapely.linestrings(line.path.points_mm)
-        return shapely.buffer(axis, float(reach[0]), quad_segs=_QUARTER)
+        at, axis = line.path.points_mm, shapely.linestrings(line.path.points_mm)
+        if len(at) <= _LONG or shapely.is_simple(axis):
+            return shapely.buffer(axis, float(reach[0]), quad_segs=_QUARTER)
+        starts = range(0, len(at) - 1, _CHUNK)  # a long scribble at once would take minutes
+        axes = [shapely.linestrings(at[k : k + _CHUNK + 1]) for k in starts]
+        return shapely.union_all(shapely.buffer(axes, float(reach[0]), quad_segs=_QUARTER))
     wide = (float(2 * reach[0]), float(2 * reach[1]))
     return Line(line.name, line.path, wide).outline()
 

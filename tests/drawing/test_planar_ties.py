@@ -9,8 +9,18 @@ from stippler.drawing.planar.assemble import _runs, _same
 from stippler.drawing.planar.borders import Snap, trace
 from stippler.drawing.planar.moves import _doubled
 from stippler.drawing.planar.overlay import meets
-from stippler.drawing.planar.path import UNIT_MM, Path, path_of_cubics, pieces_of, with_handles
+from stippler.drawing.planar.path import (
+    UNIT_MM,
+    Curve,
+    Path,
+    on_cubic,
+    path_of_cubics,
+    pieces_of,
+    with_handles,
+)
 from stippler.drawing.planar.planar_map import PAGE, Arc, PlanarMap
+from stippler.drawing.planar.policies import pieces_of as policies_of
+from stippler.drawing.planar.policies import said, with_policy
 from stippler.errors import GeometryError
 from tests.drawing.test_planar_map import box, node_at, size
 
@@ -200,6 +210,7 @@ def test_a_line_parts_an_area_only_where_it_goes_across(page, end):
     found = edits.split(area, tail, 1).map
     assert len(found.areas) == 3
     assert sorted(size(found, k) for k in found.areas if k) == pytest.approx([800, 800])
+    assert all(arc.left != arc.right for arc in found.arcs.values())  # nothing of the line is left
     inside = Path.polyline([(30.0, 5.0), (30.0, 45.0)])
     with pytest.raises(Exception, match="does not part"):
         edits.split(area, inside, 1)
@@ -245,7 +256,50 @@ def test_short_handles_are_as_smooth_as_long_ones_and_turn_each_other(length):
     )  # fmt: skip
     at = path.nodes()[1]
     assert nodes.is_smooth(path, at)
+    bent = path_of_cubics([pieces_of(path)[0], np.array(
+        [node, node + 2 * to + (0.0, 0.1 * length), (33.0, 8.0), (40.0, 10.0)]
+    )])  # fmt: skip
+    assert not nodes.is_smooth(bent, at)
+    cusp = path_of_cubics([pieces_of(path)[0], np.array(
+        [node, node - 2 * to, (33.0, 8.0), (40.0, 10.0)]
+    )])  # fmt: skip
+    assert not nodes.is_smooth(cusp, at)
     turned = nodes.move_handle(path, at, "in", (20.0, 3.0 + length / 2))
     handles = nodes.handles_at(turned, turned.nodes()[1])
     assert handles["in"] == pytest.approx((20.0, 3.0 + length / 2), abs=1e-6)
     assert handles["out"] == pytest.approx((20.0, 3.0 - 2 * length), abs=1e-6)
+
+
+def test_a_curve_with_uneven_times_run_back_has_them_from_the_other_end():
+    at = (0.0, 0.1, 0.3, 0.9, 1.0)
+    points = on_cubic(CURVE, np.array(at))
+    path = Path(
+        np.rint(points / UNIT_MM).astype(np.int64),
+        (Curve(0, 4, (tuple(CURVE[1]), tuple(CURVE[2])), at),),
+    )
+    (back,) = path.reversed().curves
+    assert back.at == pytest.approx((0.0, 0.1, 0.7, 0.9, 1.0))
+    assert back.handles_mm == (tuple(CURVE[2]), tuple(CURVE[1]))
+    assert path.reversed().reversed().curves[0].at == pytest.approx(at)
+
+
+def test_pieces_of_a_border_are_told_from_end_to_end():
+    way = Path.polyline([(k, k % 2) for k in range(10)])
+    for policies, wanted in (
+        ((), ((0, 9, ""),)),
+        (((0, 9, "wall"),), ((0, 9, "wall"),)),
+        (((2, 4, "wall"), (4, 5, "through")), ((0, 2, ""), (2, 4, "wall"), (4, 5, "through"),
+                                               (5, 9, ""))),
+        (((0, 3, "wall"), (6, 9, "bleed")), ((0, 3, "wall"), (3, 6, ""), (6, 9, "bleed"))),
+    ):  # fmt: skip
+        arc = Arc(way, 1, 2, policies)
+        assert policies_of(arc) == wanted
+        told = [policy for first, last, policy in wanted for _ in range(last - first)]
+        assert said(arc) == told
+
+
+def test_what_is_said_of_a_border_that_is_not_there_is_refused(two):
+    for act in (lambda: with_policy(two, {999: ()}),
+                lambda: moves.follow(two, {999: box(1, 1, 2, 2)})):  # fmt: skip
+        with pytest.raises(GeometryError, match=r"border 999.*is not there"):
+            act()

@@ -108,6 +108,9 @@ def test_stretching_a_round_dot_makes_it_so_much_longer_that_way():
     new = ShapeChange(angle_rad=1.0, stretch=0.75).of(some)
     assert new["elongation"] == pytest.approx(np.full(3, 1.75))
     assert new["angle_rad"] == pytest.approx(np.full(3, 1.0))
+    half = ShapeChange(angle_rad=1.0, stretch=0.75).of(some, 0.5)
+    assert half["elongation"] == pytest.approx(np.full(3, 1.375))
+    assert half["angle_rad"] == pytest.approx(np.full(3, 1.0))
     across = ShapeChange(angle_rad=1.0 + math.pi / 2, stretch=0.75).of(
         dots(3, angle_rad=1.0, elongation=1.75)
     )

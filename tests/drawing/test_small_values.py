@@ -17,6 +17,7 @@ from stippler.drawing.parameter import Choice, Kind, Parameter, by_default
 from stippler.drawing.pens import PENS
 from stippler.drawing.reference import Picture
 from stippler.drawing.style import BORDERS, Style
+from stippler.drawing.validation import floats
 from stippler.errors import ParameterError
 
 SQUARE = shapely.box(0, 0, 5, 5)
@@ -126,3 +127,30 @@ def test_outlines_are_found_for_many_points_at_once(n):
     for k, outline in reversed([*enumerate(outlines)]):  # the first is the uppermost
         wanted[shapely.contains_xy(outline, *points.T)] = k
     assert np.array_equal(OutlineGrid(outlines).find(points), wanted)
+
+
+@pytest.mark.parametrize("values", ["abc", [[1, 2], [3]], [1 + 2j], [object()], ["1", "2"]])
+def test_what_is_no_array_of_numbers_is_refused_by_its_name(values):
+    with pytest.raises(ParameterError, match=r"places.*no array of numbers"):
+        floats(values, "places")
+
+
+def test_numbers_of_any_kind_become_an_array_of_ones_own():
+    mine = np.arange(4.0)
+    for values in (mine, [0, 1, 2, 3], (False, True, 2, 3), np.arange(4, dtype=np.uint8)):
+        found = floats(values, "places")
+        assert found.dtype == np.float64
+        assert found.tolist() == [0.0, 1.0, 2.0, 3.0]
+        assert found is not mine
+        assert found.flags.writeable
+    assert np.isnan(floats([math.nan], "places")).all()
+
+
+def test_a_plain_drawing_is_the_page_alone():
+    drawing = Drawing.blank(Page(10, 10))
+    assert drawing.is_plain
+    drawing.areas[3] = Area("ear", SQUARE)
+    assert not drawing.is_plain
+    drawing = Drawing.blank(Page(10, 10))
+    drawing.lines[1] = None
+    assert not drawing.is_plain

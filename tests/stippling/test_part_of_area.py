@@ -152,3 +152,11 @@ def test_odd_lines_cut_an_area_with_a_hole(corners):
     assert part.within(area.buffer(1e-9))
     assert shapely.distance(part, shapely.linestrings(corners)) >= 0.25 + 0.4 - 1e-9
     assert part.area > 0.6 * area.area
+
+
+def test_lines_that_leave_an_area_no_room_are_named():
+    drawing = Drawing.blank(Page(20.0, 10.0))
+    path = Path.polyline([(-5, 5), (25, 5)])
+    drawing.lines = {0: Line("wide", path, (0.2, 0.2), meeting="distance", distance_mm=8.0)}
+    with pytest.raises(GeometryError, match="leave it no room"):
+        part_for_dots(drawing, 0, shapely.box(0, 0, 20, 10))

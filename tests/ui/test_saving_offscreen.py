@@ -119,6 +119,24 @@ def test_a_file_changed_by_another_program_is_not_replaced_at_once(desk, picture
     assert len(stippler.open(path).dots) == desk.app.session.n_dots
 
 
+def test_a_file_that_is_gone_is_told_as_such_and_written_anew_if_asked_again(
+    desk, picture, tmp_path
+):
+    finished(desk, picture)
+    path = tmp_path / "ear.stipple"
+    saved_as(desk, path)
+    path.unlink()
+    erased(desk)
+    desk.host.key("s", ctrl=True)
+    desk.host.until(lambda: not desk.app.session.exporting, "nothing")
+    assert "no longer there" in desk.host.said()
+    assert "another program" not in desk.host.said()
+    assert not path.exists()
+    desk.host.key("s", ctrl=True)
+    desk.host.until(lambda: not desk.app.session.exporting, "the file")
+    assert len(stippler.open(path).dots) == desk.app.session.n_dots
+
+
 def test_a_broken_drawing_leaves_what_was_open(desk, picture, tmp_path) -> None:
     finished(desk, picture)
     (tmp_path / "bad.stipple").write_bytes(b"PK\3\4 no")

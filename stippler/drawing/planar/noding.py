@@ -11,6 +11,9 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _MOST_ROUNDS = 40
+_MOST_SAME = 2
+"""How often the same segments may come out of splitting: then no end comes."""
+
 _ROOM = 256
 
 
@@ -33,6 +36,12 @@ def pairs_beside(xy: Ints) -> int:
     low, high = np.minimum(xy[:, 0], xy[:, 2]), np.maximum(xy[:, 0], xy[:, 2])
     low.sort()
     return int(np.searchsorted(low, high, "right").sum()) - len(xy) * (len(xy) + 1) // 2
+
+
+def one_way(xy: Ints) -> Ints:
+    """Return segments that all run from the lower of their ends, in an order of points."""
+    swap = (xy[:, 0] > xy[:, 2]) | ((xy[:, 0] == xy[:, 2]) & (xy[:, 1] > xy[:, 3]))
+    return np.where(swap[:, None], xy[:, [2, 3, 0, 1]], xy)
 
 
 def node_segments(xy: Ints, is_new: Bools) -> tuple[Ints, Ints, Bools]:
@@ -61,10 +70,15 @@ def node_segments(xy: Ints, is_new: Bools) -> tuple[Ints, Ints, Bools]:
     parent = np.arange(len(xy))
     moved = is_new.copy()
     fresh = is_new
-    for _ in range(_MOST_ROUNDS):
+    known: list[bytes] = []
+    for k in range(_MOST_ROUNDS):
         which, at = contacts(xy, fresh)
         if not len(which):
             return xy, parent, moved
+        if k > 1:  # many more rounds would come: look whether they lead anywhere
+            known.append(np.unique(one_way(xy), axis=0).tobytes())
+            if known.count(known[-1]) == _MOST_SAME:
+                break
         xy, split_of = _split(xy, which, at)
         was_split = np.zeros(len(parent), np.bool_)
         was_split[which] = True

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.planar.graph import number_nodes
-from stippler.drawing.planar.noding import contacts, pairs_beside
+from stippler.drawing.planar.noding import contacts, one_way, pairs_beside
 from stippler.drawing.planar.path import UNIT_MM
 from stippler.drawing.planar.planar_map import OUTSIDE, PAGE, Arc, PlanarMap, Segments
 from stippler.drawing.planar.slivers import LEAST_WIDTH_MM
@@ -111,7 +111,7 @@ def _crossing(xy: Ints, arc_of: Ints, ids: list[int]) -> Fault | None:
 
 def _doubled(xy: Ints, arc_of: Ints, ids: list[int]) -> Fault | None:
     """Return where two borders run along the same segment."""
-    same_way = _one_way(xy)
+    same_way = one_way(xy)
     order = np.lexsort(same_way.T)
     equal = (same_way[order[1:]] == same_way[order[:-1]]).all(axis=1)
     for n in np.flatnonzero(equal)[:1].tolist():
@@ -255,12 +255,6 @@ def _spread(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return x ^ (x >> np.uint64(31))
-
-
-def _one_way(xy: Ints) -> Ints:
-    """Return segments that all run from the lower of their ends, in an order of points."""
-    swap = (xy[:, 0] > xy[:, 2]) | ((xy[:, 0] == xy[:, 2]) & (xy[:, 1] > xy[:, 3]))
-    return np.where(swap[:, None], xy[:, [2, 3, 0, 1]], xy)
 
 
 def _area(k: int) -> str:

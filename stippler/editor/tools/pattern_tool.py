@@ -214,8 +214,13 @@ class Taken:
         return cls(dots.id[rows[known]].copy(), area, came[known])
 
     def put(self, document: Document, bent: Deformation) -> None:
-        """Bring them to where a deformation has them; those that would leave their area stay."""
+        """Bring them to where a deformation has them.
+
+        Those that would leave their area stay, and those that would come too near to a line.
+        """
         at = bent.apply(self.from_)
         inside = document.partition.area_at(at) == self.area
+        if (lines := document.meetings) is not None:
+            inside &= lines.are_off(at)
         rows = document.rows(self.ids)
         document.change("position_mm", rows[inside], at[inside])

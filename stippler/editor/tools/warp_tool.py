@@ -229,7 +229,7 @@ class Warping(Drag):
         self._keep_tone(document, self.now)
         for k in self.lines:
             meet(document, k, desk.say)
-        clear_zones(document, document.rows(self.target.ids))
+        clear_zones(document, document.rows(self.target.ids), desk.say)
         document.commit()
         return RESTING
 

@@ -317,7 +317,7 @@ def _told(path: Path) -> Iterator[None]:
         raise PictureError("is no picture we read", path, f"give a {FORMATS_TEXT}") from None
     except MemoryError:
         raise PictureError("needs more memory than there is", path, "reduce it first") from None
-    except ParameterError:
+    except ParameterError:  # pragma: no cover: a caller's fault, were there one, is no damage
         raise
     except _DAMAGED as bad:
         raise PictureError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -182,11 +183,15 @@ class Filing:
             self.save_as()
         elif exports.is_changed_on_disk:
             exports.allow_replacing()
-            session.messages.say(
-                f"{shown(exports.file.name)} was changed by another program; save again to replace "
-                "it, or save under another name",
-                WARNING,
+            name = shown(exports.file.name)
+            text = (
+                f"{name} was changed by another program; save again to replace it, or save under "
+                "another name"
+                if os.path.exists(exports.file)
+                else f"{name} is no longer there: it was moved or deleted, or its drive is gone; "
+                "save again to write it anew, or save under another name"
             )
+            session.messages.say(text, WARNING)
         else:
             session.save(exports.file)
 

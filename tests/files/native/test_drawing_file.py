@@ -29,7 +29,7 @@ def some_drawing(n=50, seed=0):
     rng = np.random.default_rng(seed)
     drawing = Drawing.blank(Page(80.0, 60.0), Style(n_dots=1234, seed=7, name="bone"))
     drawing.styles[3] = Style(size_range_mm=(0.1, 0.3), pen="quill")
-    corner = Polygon([(0, 0), (20 + seed / 3, 0), (0, 1 / 3 + 10)])
+    corner = Polygon([(0, 0), (20 + seed % 97 / 3, 0), (0, 1 / 3 + 10)])
     drawing.areas[5] = Area('ear é\n"<', corner, style=3, locked=True, border="wall")
     dots = Dots.round(rng.random((n, 2)) * (80, 60), 0.1 + rng.random(n))
     dots.elongation[:] = 1 + rng.random(n)

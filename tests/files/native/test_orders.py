@@ -169,3 +169,29 @@ def test_another_step_than_the_one_undone_is_not_redone():
     again = again_of(members)
     right = [*entries, Entry(REDONE, first, n_done=1)]
     assert replay(again, map(of_entry, right), picture_of_bytes) == (3, "")
+
+
+def test_steps_of_a_journal_are_undone_past_its_beginning_and_redone(begun_later):
+    doc, members, _ = begun_later
+    made = []
+    doc.follow(EditLog(made.append, doc).take)
+    resized(doc, 0.6)
+    for act in (doc.undo, doc.undo, doc.redo, doc.redo):
+        assert act()
+    again = again_of(members)
+    assert replay(again, [make() for make in made], picture_of_bytes) == (len(made), "")
+    assert members_of(again.drawing) == members_of(doc.drawing)
+    assert (again.history.n_done, len(again.history.steps)) == (1, 1)
+
+
+def test_steps_undone_past_a_journals_beginning_leave_none_in_effect(begun_later):
+    doc, members, _ = begun_later
+    made = []
+    doc.follow(EditLog(made.append, doc).take)
+    resized(doc, 0.6)
+    assert doc.undo()
+    assert doc.undo()
+    again = again_of(members)
+    assert replay(again, [make() for make in made], picture_of_bytes) == (len(made), "")
+    assert members_of(again.drawing) == members_of(doc.drawing)
+    assert (again.history.n_done, len(again.history.steps)) == (0, 1)

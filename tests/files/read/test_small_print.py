@@ -13,7 +13,7 @@ from PIL import Image
 
 from stippler.errors import PictureError
 from stippler.files.read import geojson, outlines, pillow, svg_outlines
-from stippler.files.read.kinds import is_table
+from stippler.files.read.kinds import is_table, kind_of
 from stippler.files.read.outlines import OutlineError, read_outlines
 from stippler.files.read.picture import picture_of_bytes
 from stippler.files.read.pixels import with_alpha
@@ -232,3 +232,13 @@ def test_what_looks_like_a_table_in_any_of_its_first_lines():
     assert is_table(b"a,b\n1,2\n3,4\n5,")
     assert not is_table(b"a,b\n1,2\nfive,")
     assert not is_table(b"\0" + b"x_mm,y_mm\n1,2\n")
+
+
+@pytest.mark.parametrize(
+    ("head", "kind"),
+    [(b"II*\0", "tiff"), (b"MM\0*", "tiff"), (b"II+\0", "tiff"), (b"MM\0+", "tiff"),
+     (b"\x89PNG\r\n\x1a\n", "png"), (b"\xff\xd8\xff\xe0", "jpeg"), (b"%PDF-1.7", ""),
+     (b"<svg xmlns=", ""), (b"GIF89a", ""), (b"", "")],
+)  # fmt: skip
+def test_who_reads_a_file_is_told_by_its_beginning(head, kind):
+    assert kind_of(head + bytes(40)) == kind

@@ -279,7 +279,8 @@ def test_pixels_of_a_window_are_within_the_file_and_at_least_one():
     ("edges", "wanted"),
     [
         ([0.0, 2.0, 4.0], [0.5, 2.5]), ([0.0, 1.5, 3.0], [(0 + 0.5) / 1.5, (0.5 + 2) / 1.5]),
-        ([0.0, 0.5, 1.0, 1.5], [0, 0, 1]), ([3.0, 4.0], [3]), ([1.0, 2.0, 3.0, 4.0], [1, 2, 3]),
+        ([0.0, 0.5, 1.0, 1.5], [0, 0, 1]), ([1.25, 1.75, 2.25], [1, 2]),
+        ([0.0, 1.5], [1 / 3]), ([3.0, 4.0], [3]), ([1.0, 2.0, 3.0, 4.0], [1, 2, 3]),
     ],
 )  # fmt: skip
 def test_rows_are_averaged_by_area_or_shown_as_they_are(edges, wanted):
@@ -362,3 +363,21 @@ def test_a_scaled_sheet_begins_where_it_began():
     dots = found.layers[0].dots
     assert dots.position_mm == pytest.approx(some().position_mm * 2.5)
     assert dots.radius_mm == pytest.approx(some().radius_mm * 2.5)
+
+
+def test_taps_of_a_plotter_stand_in_the_middle_of_their_dots_and_have_their_ink():
+    dots = some(9)
+    text = b"".join(svg.chunks(sheet(Layer("dots", dots)), {"round_dots": "taps"})).decode()
+    found = re.findall(r'stroke-width="([\d.]+)" d="M([-\d.]+) ([-\d.]+)h([\d.]+)"', text)
+    wide, x, y, length = np.array(found, float).T
+    assert np.column_stack([x + length / 2, y]) == pytest.approx(dots.position_mm, abs=2e-3)
+    ink = math.pi * (wide / 2) ** 2 + wide * length
+    assert ink == pytest.approx(math.pi * dots.radius_mm.astype(float) ** 2, rel=5e-3)
+
+
+def test_plotters_are_set_as_most_people_want_them():
+    (gcode,) = (one for one in FORMATS if ".gcode" in one.endings)
+    usual = {option.name: option.default for option in gcode.options}
+    assert (usual["pen_width"], usual["sort"], usual["lift_time"]) == (0.3, True, 0.15)
+    lift = next(option for option in gcode.options if option.name == "lift_time")
+    assert (lift.low, lift.high) == (0, 60)
