@@ -1,6 +1,7 @@
 """Make the pictures of `docs/areas.md`: the window with areas, the paper's Fig. 2, and borders.
 
-``python docs/make_areas.py [--only window|eye|borders|pieces]``; without a display, some minutes.
+``python docs/make_areas.py [--only window|eye|borders|pieces|row]``; without a display,
+some minutes.
 
 `docs/areas-eye.png` is what Fig. 2 of Deussen et al. (2000) shows: the eye and its surroundings
 relaxed apart, so that the border between them is enhanced; left as one area, right as two.
@@ -21,12 +22,15 @@ from stippler.api import process
 from stippler.app import App
 from stippler.drawing.area_edits import edit_areas, map_of
 from stippler.drawing.document import Document
-from stippler.drawing.drawing import Drawing
+from stippler.drawing.dots import FIXED, Dots
+from stippler.drawing.drawing import Drawing, Page
 from stippler.drawing.planar import edits, moves
 from stippler.drawing.planar.path import Path as Outline
 from stippler.drawing.planar.policies import with_policy
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
+from stippler.headless import render_image
+from stippler.stippling.lines import border_lines, row_along
 from stippler.ui.panels.layout import AREAS
 from stippler.ui.window.scripted_host import Host
 
@@ -38,7 +42,7 @@ SIDE_PX, SIDE_MM = 420, 70.0
 def main() -> None:
     """Make the pictures asked for."""
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--only", choices=("window", "eye", "borders", "pieces"))
+    options.add_argument("--only", choices=("window", "eye", "borders", "pieces", "row"))
     only = options.parse_args().only
     if only in (None, "window"):
         make_window(DOCS / "areas.png")
@@ -48,6 +52,30 @@ def main() -> None:
         make_borders(DOCS / "areas-borders.png")
     if only in (None, "pieces"):
         make_pieces(DOCS / "areas-pieces.png")
+    if only in (None, "row"):
+        make_row(DOCS / "areas-row.png")
+
+
+def make_row(out: Path) -> None:
+    """Fill an area with a row inside its border: first dots from the top, and from the row."""
+    drawing = Drawing.blank(Page(40.0, 34.0), Style(n_dots=500))
+    drawing.reference = Reference(np.full((340, 400), 0.35, np.float32), 40.0)
+    document = Document(drawing)
+    t = np.linspace(0.0, 2 * np.pi, 200)[:-1]
+    r = 13.0 + 2.2 * np.cos(3 * t) + 1.2 * np.sin(5 * t)
+    ring = Outline.polyline(np.column_stack([20 + r * np.cos(t), 17 + r * np.sin(t)]), closed=True)
+    edit_areas(document, "area", lambda areas: edits.add(areas, ring, edits.IS_CUT))
+    (line,) = border_lines(document.drawing.areas[1].outline_mm, "inside", 0.9)
+    document.begin("row")
+    rows = document.insert(Dots.round(line.at(row_along(line, None, 0.95, None)), 0.25))
+    document.change("constraint", rows, np.full(len(rows), FIXED, np.int8))
+    document.commit()
+    made = [
+        process(document.drawing, 1, start=start, iterations=0, dots=500)
+        for start in ("top", "border")
+    ]
+    panels = [render_image(one, px_per_mm=11.0, grey=True) for one in made]
+    Image.fromarray(np.hstack(panels)).quantize(16).save(out, optimize=True)
 
 
 def make_window(out: Path) -> None:

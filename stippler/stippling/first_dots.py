@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.stippling.border_rows import behind_rows
 from stippler.stippling.draft import Draft, Floats
 from stippler.stippling.grids import grid, rows_along
 from stippler.stippling.ground import without_dots_at
@@ -71,7 +72,12 @@ def density_of(draft: Draft) -> NDArray[np.float32]:
     density = draft.ground.open_to_dots(draft.raster.density())
     if not len(draft.stand):
         return density
-    density = without_dots_at(density, draft.stand + draft.raster.bleed)
+    there = draft.stand + draft.raster.bleed
+    from_rows = draft.style.start == "border" and draft.style.first_dots == "pulse-density"
+    behind = behind_rows(density, there) if from_rows else None
+    density = without_dots_at(density, there)
+    if behind is not None:
+        density[behind] = 0.0
     total = float(density.sum(dtype=np.float64))
     if draft.n_wanted is not None and total > 0.0:
         density *= np.float32(draft.n_wanted / total)
