@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter, label
+from scipy.ndimage import distance_transform_edt, gaussian_filter, label
 from scipy.spatial import KDTree
 from shapely.geometry import box
 
@@ -126,21 +126,22 @@ def _steps_of_the_wedge(n: int = 10_000) -> list[Figure]:
     """Measure how even dots are within each step of the wedge; the worst of them."""
     picture, points = _drawn("step-wedge.png", n, "perceptual")
     level = np.rint(255 * picture.darkness).astype(np.intp)
+    at = np.minimum((points / picture.pixel_mm).astype(np.intp), np.array(level.shape[::-1]) - 1)
+    distance = np.asarray(KDTree(points).query(points, k=2)[0])[:, 1] / picture.pixel_mm
     least, variation = [], []
     for value in np.flatnonzero(np.bincount(level[level > 12]) > 0.01 * level.size):
         bars, n_bars = label(level == value)
         for bar in range(1, n_bars + 1):
-            area = int(np.count_nonzero(bars == bar))
-            rows, columns = (np.flatnonzero((bars == bar).any(axis=axis)) for axis in (1, 0))
-            low = np.array([columns[0], rows[0]]) * picture.pixel_mm
-            high = np.array([columns[-1] + 1, rows[-1] + 1]) * picture.pixel_mm
-            mine = points[((points >= low) & (points < high)).all(axis=1)]
-            if area < 0.01 * level.size or len(mine) < 60:
+            inside = bars == bar  # the black step's is one with the frames of all
+            count = int(np.count_nonzero(inside[at[:, 1], at[:, 0]]))
+            area = int(np.count_nonzero(inside))
+            if area < 0.01 * level.size or count < 60:
                 continue
-            spacing = float(np.sqrt((high - low).prod() / len(mine) * 2.0 / np.sqrt(3.0)))
-            inner = ((mine - low > spacing) & (high - mine > spacing)).all(axis=1)
-            near = np.asarray(KDTree(mine).query(mine[inner], k=2)[0])[:, 1] / spacing
-            least.append(near.min())
+            depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
+            core = depth > np.sqrt(area / count * 2.0 / np.sqrt(3.0))  # a spacing off its border
+            near = distance[core[at[:, 1], at[:, 0]]]
+            spacing = float(np.sqrt(np.count_nonzero(core) / len(near) * 2.0 / np.sqrt(3.0)))
+            least.append(near.min() / spacing)
             variation.append(near.std() / near.mean())
     note = f"the worst of {len(least)} steps"
     return [

@@ -6,6 +6,7 @@ number of dots is its integral. Positions are in pixels, x right, y down, pixel 
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,6 +24,7 @@ from stippler.kernels.halftone.scan_order import (
     chamfer,
     order_by_distance,
 )
+from stippler.kernels.machine.pool import begun, parallel_for
 from stippler.stippling.tone import DotRule
 
 CELLS_PER_DOT = 14.0
@@ -33,7 +35,9 @@ ENLARGED, REDUCED, DROPPED = 0.75, 0.25, 0.02
 
 _REACH = 200  # cells; the farthest a region looks for its charge
 _SEEDS_AT_ONCE = 250_000
-_LEVELS_AT_ONCE = 1_000_000  # cells that the front may pass over
+_FEWEST_AT_ONCE, _MOST_AT_ONCE = 200_000, 1_000_000  # cells across levels that are listed together
+_LISTS = 64  # of seeds, where these bounds allow
+_ROWS_A_LEVEL = 3  # that the front passes over at most where it falls back
 _SPARE, _SPARE_EACH = 0.01, 5e-7  # of a dot: what rounding may take without a dot being lost
 _MANY_CELLS = 50_000_000
 _VARIANTS = 8
@@ -90,16 +94,25 @@ def pulse_density(
     corner, density = _window(density, s)
     asked = float(density.sum(dtype=np.float64))
     charge = np.empty((density.shape[0] * s, density.shape[1] * s), np.float32)
-    fill_cells(density, s, whole_dots(asked), charge)
+    parallel_for(fill_cells, len(density), density, s, whole_dots(asked), charge, grain=64)
     reach = _reach(density, s)
     spacing = s * _spacing(density)
+    most, n = _most_dots(asked), 0
+    position, region = np.empty((most, 2)), np.empty(most, np.float32)
     for share, first in grown(charge, asked, growth, start, seed, reach, spacing):
-        yield share, FirstDots(first.position_px / s + corner, first.region_px / np.float32(s * s))
+        before, n = n, len(first.position_px)
+        position[before:n] = first.position_px[before:] / s + corner
+        region[before:n] = first.region_px[before:] / np.float32(s * s)
+        yield share, FirstDots(position[:n], region[:n])
 
 
 def whole_dots(asked: float) -> float:
     """Return by what a charge is multiplied so that a whole number of dots comes of it."""
     return (round(asked) + _SPARE) / asked + _SPARE_EACH if asked >= 0.5 else 1.0
+
+
+def _most_dots(asked: float) -> int:
+    return math.ceil(asked * 1.0001) + 16
 
 
 def grown(
@@ -110,7 +123,7 @@ def grown(
 
     `reach`: how far a region looks; `spacing`: of the dots; both in cells, as what is yielded.
     """
-    n_max = math.ceil(asked * 1.0001) + 16
+    n_max = _most_dots(asked)
     points, areas = np.empty((n_max, 2)), np.empty(n_max, np.float32)
     dy, dx = growth_orders(growth, reach)
     cursor = np.zeros(2)
@@ -225,18 +238,34 @@ _Seeds = Iterator[tuple[float, NDArray[np.int32]]]
 
 
 def _front(charge: NDArray[np.float32], spacing: float, slope: float, seed: int) -> _Seeds:
-    """Yield the cells that hold charge as an undulating front passes over them from the top."""
+    """Yield the cells that hold charge as an undulating front passes over them from the top.
+
+    The next ones are listed in another thread while regions grow from those before. So some are
+    listed that are used up by then, which growing passes over: the dots are the same.
+    """
     h, w = charge.shape
     lag = _undulation(h, w, spacing, slope, seed)
     height = math.ceil(float(np.abs(lag).max())) + 1
-    order = np.empty(min(_SEEDS_AT_ONCE, charge.size) + 1, np.int32)
+    levels = 1 + min(max(charge.size // _LISTS, _FEWEST_AT_ONCE), _MOST_AT_ONCE) // w
+    room = min(_ROWS_A_LEVEL * levels * w, charge.size) + 1
     next_row, due = np.zeros(w, np.int32), lag[0].copy()
     at = np.array((-height, 0), np.int64)
     last = h + height
-    while at[0] < last:
-        stop = min(int(at[0]) + 1 + _LEVELS_AT_ONCE // w, last)
+
+    def listed(order: NDArray[np.int32]) -> tuple[float, NDArray[np.int32]]:
+        stop = min(int(at[0]) + levels, last)
         n = along_front(charge, lag, next_row, due, at, stop, order)
-        yield (int(at[0]) + height) / (last + height), order[:n]
+        return (int(at[0]) + height) / (last + height), order[:n]
+
+    lists = itertools.cycle((np.empty(room, np.int32), np.empty(room, np.int32)))
+    seeds = listed(next(lists))
+    while at[0] < last:
+        coming = begun(listed, next(lists))
+        try:
+            yield seeds
+        finally:
+            seeds = coming()
+    yield seeds
 
 
 def _spacing(density: NDArray[np.float32]) -> float:

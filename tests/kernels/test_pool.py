@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from stippler.kernels.machine.pool import parallel_for, set_threads, stand_back
+from stippler.kernels.machine.pool import begun, parallel_for, set_threads, stand_back
 
 
 @pytest.fixture(autouse=True)
@@ -68,3 +68,16 @@ def test_a_thread_that_stands_back_has_a_lower_rank_and_others_keep_theirs():
     thread.join()
     assert told[0] >= max(mine, 10)
     assert os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) == mine
+
+
+def test_a_call_begun_gives_its_result_in_whatever_thread():
+    for threads in (1, 2):
+        set_threads(threads)
+        try:
+            results = [begun(divmod, 17, k) for k in (2, 3, 5)]
+            assert [result() for result in results] == [(8, 1), (5, 2), (3, 2)]
+            failing = begun(divmod, 1, 0)
+            with pytest.raises(ZeroDivisionError):
+                failing()
+        finally:
+            set_threads(0)

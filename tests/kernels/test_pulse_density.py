@@ -76,7 +76,7 @@ def test_chance_changes_the_dots_but_not_their_number():
 def test_cells_share_a_pixel_evenly():
     density = np.array([[1.0, 0.0], [4.0, 9.0]], np.float32)
     cells = np.empty((6, 6), np.float32)
-    fill_cells(density, 3, 1.0, cells)
+    fill_cells(0, len(density), density, 3, 1.0, cells)
     assert np.allclose(cells, np.kron(density, np.ones((3, 3))) / 9)
     assert (cells[:3, 3:] == 0).all()
 

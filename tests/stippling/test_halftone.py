@@ -13,6 +13,7 @@ from stippler.analysis.spectrum import measure_spectrum
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
+from stippler.kernels.machine import pool
 from stippler.stippling.halftone import (
     DROPPED,
     ENLARGED,
@@ -214,3 +215,30 @@ def test_areas_that_are_none_are_refused():
                 call(area)
     with pytest.raises(ParameterError):
         random_in(box(0, 0, 1, 1), -1, 1)
+
+
+@pytest.mark.parametrize("start", ["top", "border"])
+def test_dots_and_snapshots_are_the_same_for_any_number_of_threads(start):
+    """Seeds are listed ahead while regions grow: which are used up by then must not matter."""
+    y, x = np.mgrid[:700, :700] / 700
+    density = (0.03 + 0.12 * np.abs(np.sin(9 * x) * np.cos(7 * y))).astype(np.float32)
+    runs = []
+    for threads in (1, 2, 3):
+        pool.set_threads(threads)
+        try:
+            runs.append([first for _, first in pulse_density(density, start=start)])
+        finally:
+            pool.set_threads(0)
+    assert len(runs[0]) > 3
+    for run in runs[1:]:
+        for alone, together in zip(runs[0], run, strict=True):
+            assert np.array_equal(alone.position_px, together.position_px)
+            assert np.array_equal(alone.region_px, together.region_px)
+
+
+def test_a_run_that_is_left_waits_for_the_seeds_it_has_asked_for():
+    density = np.full((500, 500), 0.1, np.float32)
+    run = pulse_density(density)
+    next(run)
+    run.close()
+    assert next(pulse_density(density))[1].position_px.size

@@ -20,11 +20,11 @@ USED = np.float32(-1.0)
 
 
 @kernel
-def fill_cells(density: Array, s: int, factor: float, charge: Array) -> None:
-    """Spread a multiple of the dots that each pixel asks for evenly over its s by s cells."""
-    h, w = density.shape
+def fill_cells(start: int, stop: int, density: Array, s: int, factor: float, charge: Array) -> None:
+    """Spread a multiple of the dots that pixels ask for evenly over their s by s cells, by rows."""
+    w = density.shape[1]
     share = np.float32(factor / (s * s))
-    for y in range(h):
+    for y in range(start, stop):
         for k in range(s):
             row = charge[y * s + k]
             for x in range(w):

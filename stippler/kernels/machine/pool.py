@@ -13,7 +13,9 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
+from typing import Any, TypeVar
+
+Result = TypeVar("Result")
 
 _PATIENT = 10  # as `nice` counts
 
@@ -132,6 +134,21 @@ def parallel_for(
     with _counted() as is_alone:
         _share(work, min(threads, n_ranges) - 1 if is_alone else 0, stopped)
     return not stopped.is_set()
+
+
+def begun(call: Callable[..., Result], *args: Any) -> Callable[[], Result]:
+    """Begin a call in a thread of the pool; return what waits for its result.
+
+    Where there is one thread only, or all are at work, the call is made once it is asked for.
+    """
+    if n_threads() == 1 or _n_callers:
+        return lambda: call(*args)
+    future = _executor().submit(call, *args)
+
+    def result() -> Result:
+        return call(*args) if future.cancel() else future.result()
+
+    return result
 
 
 @contextlib.contextmanager
