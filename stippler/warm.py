@@ -162,14 +162,13 @@ def _bend_and_adhere() -> None:
     from stippler.drawing.line import Line
     from stippler.drawing.line_index import LineIndex
     from stippler.drawing.planar.path import Path as LinePath
-    from stippler.stippling.lines import adhere
 
     box = (0.0, 0.0, 9.0, 9.0)
     bent = Deformation(cage=Cage.over(box).moved({5: (3.5, 3.5)}))
     bent.folds(box)
     index = LineIndex([Line("a", LinePath.polyline([(1, 1), (8, 8)]), meeting="adhere")], 1.0)
     places = bent.apply(np.random.default_rng(0).random((50, 2)) * 9)
-    adhere(index, places)
+    index.nearest(places)
     index.keep_distance(places)
 
 

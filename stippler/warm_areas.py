@@ -15,7 +15,6 @@ from stippler.drawing.planar.planar_map import OUTSIDE, PlanarMap
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.halftone_area import pulses_inside
-from stippler.stippling.lines import adhere
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import Relaxation
@@ -61,7 +60,7 @@ def use_lines() -> None:
     path = Path.polyline([(2.0, 2.0), (20.0, 8.0), (35.0, 30.0)])
     points = np.random.default_rng(1).random((200, 2)) * _SIDE
     line = Line("line", path, meeting=ADHERE)
-    adhere(adhering([line]), points)
+    adhering([line]).nearest(points)
     keeping_distance([Line("line", path)]).keep_distance(points)
 
 

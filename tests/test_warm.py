@@ -75,7 +75,6 @@ from stippler.drawing.planar.path import Path
 from stippler.drawing.planar.planar_map import PlanarMap
 from stippler.drawing.reference import Reference
 from stippler.drawing.line_index import adhering, keeping_distance
-from stippler.stippling.lines import adhere
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.radii import solve_radii
@@ -98,7 +97,7 @@ bent.apply(rng.random((10, 2)))
 look("cage")
 line = Line("line", Path.polyline([(1.0, 1.0), (5.0, 9.0)]))
 keeping_distance([line]).keep_distance(rng.random((9, 2)) * 9)
-adhere(adhering([line]), rng.random((9, 2)) * 9)
+adhering([line]).nearest(rng.random((9, 2)) * 9)
 look("lines")
 reference = Reference(rng.random((60, 90)).astype(np.float32), 30.0)
 shapes = [areas.outline(k) for k in areas.areas[1:]]

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 Points = NDArray[np.float64]
 
 _STILL_MM = 1e-6
+_SPACINGS = 4.0  # beyond a line's reach, within which dots tell how many fit on it
+_DRAWN_IN = 12  # halvings of a dot's way to a line
 
 
 def lines_of(document: Document) -> dict[int, Line]:
@@ -139,19 +141,32 @@ def _near(document: Document, line: Line, reach_mm: float) -> Rows:
 
 
 def _line_up(document: Document, k: int, line: Line) -> int:
-    from stippler.drawing.line_index import adhering
-    from stippler.stippling.lines import adhere, spread
+    """Bring the nearest free dots within reach onto a line, as many as fit, and spread them."""
+    import shapely
 
-    rows, mine = _near(document, line, line.reach_mm), rows_on(document, k)
-    if not len(rows) and not len(mine):
+    from stippler.drawing.line_index import LineIndex
+    from stippler.stippling.on_lines import OnLines
+    from stippler.stippling.task import MetLines
+
+    page, n_dots = document.drawing.page, max(len(document.dots), 1)
+    around = _SPACINGS * float(np.sqrt(page.width_mm * page.height_mm / n_dots))
+    far = line.reach_mm + around
+    near, mine = _near(document, line, far), rows_on(document, k)
+    near = near[LineIndex([line], far).nearest(document.dots.position_mm[near])[2] <= far]
+    rows = np.concatenate([mine, near])
+    held = np.arange(len(rows)) < len(mine)
+    met = MetLines((line,), (k,), np.where(held, 0, -1).astype(np.int32),
+                   np.where(held, document.dots.parameter[rows], 0.0), ~held)  # fmt: skip
+    at = document.dots.position_mm[rows].copy()
+    part = shapely.box(0.0, 0.0, page.width_mm, page.height_mm)
+    chooser = OnLines(met, at, [part], tone_of(document))
+    if chooser.is_idle:
         return 0
-    found = adhere(adhering([line]), document.dots.position_mm[rows])
-    on = found.line >= 0
-    far = ~on & (found.points != document.dots.position_mm[rows]).any(axis=1)
-    document.move(rows[far], found.points[far])
-    along = np.concatenate([document.dots.parameter[mine], found.along[on]])
-    hold(document, np.concatenate([mine, rows[on]]), k, spread(line, along, tone_of(document)))
-    return int(on.sum() + far.sum())
+    for _ in range(_DRAWN_IN):
+        at = chooser(at, at.copy())
+    on = chooser.on
+    hold(document, rows[on], k, chooser.along[on])
+    return int(on.sum()) - int((on & held).sum())
 
 
 def tone_of(document: Document) -> Callable[[Points], Points] | None:

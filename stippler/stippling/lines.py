@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -14,7 +12,6 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.line import Line
-from stippler.drawing.line_index import LineIndex
 from stippler.drawing.planar.path import Path
 from stippler.drawing.reference import Reference
 from stippler.errors import GeometryError, ParameterError
@@ -29,64 +26,6 @@ _SAME_PLACE_MM = 1e-6
 _LEAST_TANGLE, _LOOKED_AT, _MOST_MET = 1000, 64, 300_000  # segments, and pairs of their boxes
 _FAINTEST = 0.05  # darkness that is added along lines, so that none is left without dots
 MOST_ROW = 1_000_000
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Adhered:
-    """Dots after one step of lining up.
-
-    Attributes
-    ----------
-    points : (n, 2) float64
-    line : (n,) int64
-        The line each lies on now; -1 for none.
-    along : (n,) float64
-        Arc length there.
-    """
-
-    points: Points
-    line: Ints
-    along: Points
-
-
-def adhere(index: LineIndex, points: Points, tone: Tone | None = None) -> Adhered:
-    """Take dots within reach of lines to them, those near at once, those farther a part of the way.
-
-    Dots within half the reach come to lie on the line, and are spread along it in one dimension;
-    beyond, the pull falls off smoothly to nothing at the reach's end.
-    """
-    line, along, away, feet = index.nearest_feet(points)
-    out = np.array(points, np.float64)
-    reach = np.array([k.reach_mm for k in index.lines] or [1.0])[line]
-    share = np.where(line >= 0, np.clip(2.0 - 2.0 * np.maximum(away, 0.0) / reach, 0.0, 1.0), 0.0)
-    on = share >= 1.0
-    pulled = np.flatnonzero((share > 0.0) & ~on)
-    share = 0.5 * (share * share * (3.0 - 2.0 * share))[pulled, None]
-    out[pulled] += share * (feet[pulled] - out[pulled])
-    mine = np.flatnonzero(on)
-    mine = mine[np.argsort(index.whole(line[mine], along[mine]), kind="stable")]
-    along[mine] = _spread_many(index, line[mine], along[mine], tone)
-    out[mine] = index.at(line[mine], along[mine])
-    return Adhered(out, np.where(on, line, -1), np.where(on, along, 0.0))
-
-
-def _spread_many(index: LineIndex, line: Ints, along: Points, tone: Tone | None) -> Points:
-    """Spread dots along the lines they are on; all lines at once where there is no tone."""
-    out = np.empty(len(along))
-    order = np.argsort(index.whole(line, along), kind="stable")
-    owner, at = line[order], along[order]
-    if tone is not None:
-        bounds = np.flatnonzero(np.diff(owner, prepend=-2, append=-2))
-        for a, b in itertools.pairwise(bounds.tolist()):
-            out[order[a:b]] = spread(index.lines[int(owner[a])], at[a:b], tone)
-        return out
-    n = np.bincount(owner, minlength=len(index.lines))
-    rank = np.arange(len(owner)) - (np.cumsum(n) - n)[owner]
-    step = index.lengths / np.maximum(n, 1)
-    off = np.bincount(owner, at - rank * step[owner], len(n)) / np.maximum(n, 1)
-    first = np.where(index.closed, off, 0.5 * step)
-    out[order] = first[owner] + rank * step[owner]
-    return np.where(index.closed[line], out % index.lengths[line], out)
 
 
 def spread(

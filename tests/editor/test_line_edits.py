@@ -113,6 +113,13 @@ def test_dots_that_find_no_place_between_lines_are_taken_away_and_that_is_said()
     assert state(document) == before
 
 
+def test_a_line_takes_no_more_dots_than_fit_on_it():
+    document = document_of(6000)
+    k = drawn(document, curve(meeting="adhere", reach_mm=4.0))
+    fits = document.drawing.lines[k].length_mm / (1.0746 * np.sqrt(60 * 40 / 6000))
+    assert len(rows_on(document, k)) == pytest.approx(fits, rel=0.12)
+
+
 def test_a_hidden_line_moves_no_dot():
     document = document_of(800)
     before = state(document)[0]

@@ -164,3 +164,21 @@ def test_borders_are_shown_where_they_will_be(desk):
     assert shown.symmetric_difference(after).area < 0.01 * after.length
     rings = [shapely.LinearRing(p.points_mm) for p in overlay.paths if len(p.points_mm) > 3]
     assert any(r.hausdorff_distance(after.exterior) < 0.1 for r in rings)
+
+
+def test_what_areas_grow_over_is_inked_once(desk):
+    tool, document = WarpTool(), desk.document
+    tool.set("what", "areas")
+    tool.set("relaxes", False)
+    before = state(document)
+    own = document.dots.id[document.dots.area == 1].copy()
+    outside = document.dots.id[document.dots.area == 0].copy()
+    start = grip(tool, desk, 7)
+    dragged(tool, desk, start, (start[0] + 5, start[1]))
+    area, dots = document.drawing.areas[1].outline_mm, document.dots
+    assert np.isin(own, dots.id).all()  # its own go along, all of them
+    left = dots.position_mm[np.isin(dots.id, outside)]
+    assert len(left) < len(outside)
+    assert not shapely.contains_xy(shapely.buffer(area, -1e-3), *left.T).any()
+    document.undo()
+    assert state(document) == before

@@ -10,13 +10,11 @@ from hypothesis import strategies as st
 
 from stippler.drawing.deformation import Deformation
 from stippler.drawing.line import ADHERE, DISTANCE, Line
-from stippler.drawing.line_index import LineIndex, adhering, keeping_distance
+from stippler.drawing.line_index import LineIndex, keeping_distance
 from stippler.drawing.planar.moves import smooth_path
 from stippler.drawing.planar.path import Path
 from stippler.errors import GeometryError, ParameterError
-from stippler.kernels.machine.pool import set_threads
 from stippler.stippling.lines import (
-    adhere,
     border_lines,
     crossings,
     hatch_lines,
@@ -134,37 +132,11 @@ class TestSpacing:
 
 
 class TestAdhering:
-    def test_dots_line_up_smoothly(self):
-        line = Line("curve", STRAIGHT.path, (0.0, 0.0), meeting=ADHERE, reach_mm=2.0)
-        rng = np.random.default_rng(3)
-        points = np.column_stack([rng.uniform(12, 88, 400), rng.uniform(5, 15, 400)])
-        found = adhere(adhering([line]), points)
-        on = found.line == 0
-        off = np.abs(points[:, 1] - 10)
-        assert np.array_equal(on, off <= 1.0)
-        assert np.allclose(found.points[on, 1], 10)
-        assert np.array_equal(found.points[off > 2], points[off > 2])
-        between = (off > 1) & (off < 2)
-        assert (np.abs(found.points[between, 1] - 10) <= off[between]).all()
-        gaps = np.diff(np.sort(found.points[on, 0]))
-        assert np.ptp(gaps) < 0.01 * gaps.mean()
-
     def test_moving_a_line_moves_what_adheres(self):
         line = circle(10, meeting=ADHERE)
         along = spread(line, np.linspace(0, line.length_mm, 20, endpoint=False))
         moved = line.deformed(Deformation((1, 0, 5, 0, 1, -3, 0, 0, 1)))
         assert np.allclose(moved.at(along), line.at(along) + np.array([5, -3]), atol=1e-3)
-
-    def test_any_number_of_threads_gives_the_same(self):
-        lines = curves(20, 1, meeting=ADHERE)
-        points = np.random.default_rng(0).random((20_000, 2)) * 100
-        try:
-            set_threads(1)
-            one = adhere(adhering(lines), points).points
-            set_threads(3)
-            assert np.array_equal(one, adhere(adhering(lines), points).points)
-        finally:
-            set_threads(0)
 
 
 class TestRows:
