@@ -24,7 +24,7 @@ from stippler.editor.events import (
 )
 from stippler.editor.hands import Hands
 from stippler.editor.lines import Lines
-from stippler.editor.messages import ERROR, WARNING
+from stippler.editor.messages import ERROR, WARNING, Message
 from stippler.editor.painting import Painting
 from stippler.editor.patterns import Patterns
 from stippler.editor.rates import FrameRate
@@ -139,6 +139,7 @@ class Editor:
         self._keeper.load_keys(self.commands)
         self.widgets = Widgets(self.look.theme, self.gui.fonts, self.gui.scale)
         self.n_frames = 0
+        self._said: Message | None = None  # when the last frame was drawn
         self._schedule, self._rate = Schedule(), FrameRate()
         self._ratio = 1.0
         self._late: list[Event] = []  # commands for the next building of the panels
@@ -197,6 +198,9 @@ class Editor:
         self._frame(events, began)
         moving = self.view.moving or self.painting.toolbox.is_timed or self.popups.moves
         self._schedule.note_frame(began, self._clock(), moving=moving)
+        if self.session.messages.current is not self._said:  # ImGui hides what is new for a frame
+            self._said = self.session.messages.current
+            self._schedule.note_result()
         self._plan_wakes()
         self.n_frames += 1
         return True
