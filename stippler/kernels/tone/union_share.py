@@ -108,6 +108,9 @@ def _reached(x, y, r, grids, k):
 def _shares(start, stop, discs, grids, order, out):
     rays = np.empty((2, _N_RAYS), np.float32)
     for i in range(start, stop):
+        if not discs[i, 2] > 0.0:  # of a hidden area: there is nothing to share
+            out[order[i]] = 1.0
+            continue
         lost = _lost_to_neighbours(i, discs, grids, order)
         out[order[i]] = 1.0 - lost if lost <= _MANY else _kept(i, discs, grids, order, rays)
 
