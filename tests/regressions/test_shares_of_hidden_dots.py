@@ -1,4 +1,4 @@
-"""Dots of hidden areas have no size: their share of the union was no number, which was warned of."""
+"""Dots of hidden areas have no size: their share of the union was no number."""
 
 import numpy as np
 
