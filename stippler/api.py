@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
@@ -301,7 +302,7 @@ def pulse_density(
     """
     from stippler.stippling.stipple import pulse_density as halftone
 
-    _warn_of(preflight.warning("stipple", dots, _n_pixels(image)))
+    _warn_of(preflight.warning("stipple", _number(dots), _n_pixels(image)))
     inside = None if area is None else _polygon(area)
     return halftone(
         _darkness(image, tone), dots=dots, growth=growth, start=start, seed=seed, area=inside
@@ -328,7 +329,7 @@ def fill(
     """
     from stippler.stippling.initial_points import fill_area
 
-    _warn_of(preflight.warning("fill", n))
+    _warn_of(preflight.warning("fill", _number(n)))
     return fill_area(_polygon(area), n, arrangement, seed)
 
 
@@ -347,7 +348,7 @@ def relax(
     """Move points to the centroids of their cells; see `stippler.stippling.relax.relax`."""
     from stippler.stippling.relax import relax as run
 
-    _warn_of(preflight.warning("relax", np.size(points) // 2))
+    _warn_of(preflight.warning("relax", math.prod(_shape(points)) // 2))
     return run(
         points,
         polygon,
@@ -374,8 +375,21 @@ def _n_pixels(image: Any) -> int:
 
         columns, rows = size_of_picture(Path(image))
         return columns * rows
-    shape = getattr(image, "size", None) if hasattr(image, "getbands") else np.shape(image)
-    return int(np.prod(shape[:2])) if shape else 0
+    shape = image.size if hasattr(image, "getbands") else _shape(image)
+    return math.prod(shape[:2]) if shape else 0
+
+
+def _shape(values: Any) -> tuple[int, ...]:
+    """Return the shape of an array; that it is none is told by what takes it."""
+    try:
+        return np.shape(values)
+    except ValueError:
+        return (0,)
+
+
+def _number(value: Any) -> int:
+    """Return a whole number; that it is none is told by what takes it."""
+    return value if isinstance(value, int) else 0
 
 
 def _polygon(area: Any) -> Polygon | MultiPolygon:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from stippler.drawing.style import AS_STYLE, parameter_of
+from stippler.editor.border_labels import LABELS
 from stippler.editor.messages import WARNING
 from stippler.editor.tools.node_source import BorderNodes
 from stippler.editor.tools.tool import Desk
@@ -20,13 +20,6 @@ if TYPE_CHECKING:
 
 Pieces = dict[int, list[tuple[int, int]]]
 """By border: from which vertex to which."""
-
-BORDER_COMMANDS = ("as-areas", "automatic", "wall", "through", "bleed")
-"""What the commands are called, in the order of `LABELS`."""
-
-LABELS = {AS_STYLE: "As its areas"} | {
-    one.value: one.label for one in parameter_of("border").choices
-}
 
 
 def chosen_pieces(held: Sequence[Held]) -> Pieces:

@@ -6,9 +6,15 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
+from stippler.editor.border_labels import BORDER_COMMANDS
 from stippler.editor.events import LEFT, Event, KeyDown, Moved, Pressed
 from stippler.editor.messages import WARNING
-from stippler.editor.tools.border_pieces import BORDER_COMMANDS, pieces_text
+from stippler.editor.tools.border_pieces import (
+    chosen_pieces,
+    pieces_text,
+    policies_of,
+    set_policy,
+)
 from stippler.editor.tools.line_nodes import LineNodes
 from stippler.editor.tools.node_index import NodeIndex, Owned
 from stippler.editor.tools.node_source import BorderNodes, Node, NodeSource, Trial
@@ -192,6 +198,19 @@ class NodeTool(Tool):
     def n_chosen(self) -> int:
         """How many nodes are chosen; one where several paths meet counts once."""
         return sum(len(held.chosen) for held in self.held)
+
+    @property
+    def has_pieces(self) -> bool:
+        """Whether pieces of borders are chosen."""
+        return bool(chosen_pieces(self.held))
+
+    def says(self, document: Document, policy: str) -> bool:
+        """Whether that is what all chosen pieces of borders are to dots."""
+        return policies_of(document, chosen_pieces(self.held)) == {policy}
+
+    def say(self, desk: Desk, policy: str) -> None:
+        """Say what the chosen pieces of borders are to dots, as one step."""
+        set_policy(desk, self.held, policy)
 
     def choose_none(self) -> None:
         """Choose no node."""

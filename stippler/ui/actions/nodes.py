@@ -6,14 +6,8 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from stippler.drawing.style import THROUGH, parameter_of
+from stippler.editor.border_labels import BORDER_COMMANDS, LABELS
 from stippler.editor.commands import SHIFT, Command, Key
-from stippler.editor.tools.border_pieces import (
-    BORDER_COMMANDS,
-    LABELS,
-    chosen_pieces,
-    policies_of,
-    set_policy,
-)
 from stippler.editor.tools.tool import Desk
 from stippler.ui.actions.parts import Parts
 
@@ -49,13 +43,13 @@ def node_commands(parts: Parts) -> Iterator[Command]:
         yield Command(f"nodes.{name}", label, doing(act), keys, can=has_some, short=short, tip=tip)
 
     def has_pieces() -> bool:
-        return has_some() and bool(chosen_pieces(tool().held))
+        return has_some() and tool().has_pieces
 
     def is_said(policy: str) -> bool:
         document = parts.session.document
         if document is None or not has_pieces():
             return False
-        return policies_of(document, chosen_pieces(tool().held)) == {policy}
+        return tool().says(document, policy)
 
     yield from _border_commands(doing, has_pieces, is_said, tool)
 
@@ -73,7 +67,7 @@ def _border_commands(
         tip = tips.get(policy, "What the areas beside the piece say, or their styles.")
         if policy == THROUGH:
             tip = "Dots on both sides of the piece see each other across it."
-        act = doing(lambda desk, one=policy: set_policy(desk, tool().held, one))  # type: ignore[misc]
+        act = doing(lambda desk, one=policy: tool().say(desk, one))  # type: ignore[misc]
         label = f"Piece of border: {short.lower()}"
         yield Command(f"nodes.{name}", label, act, (), can=can, short=short, tip=tip,
                       is_on=lambda one=policy: is_said(one))  # type: ignore[misc]  # fmt: skip

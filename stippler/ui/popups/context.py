@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
+from stippler.editor.border_labels import BORDER_COMMANDS
 from stippler.editor.commands import Commands
-from stippler.editor.tools.border_pieces import BORDER_COMMANDS
 from stippler.editor.tools.toolbox import Toolbox
 from stippler.ui.panels.brush_radius import draw_radius
 from stippler.ui.panels.strip import draw_tool
