@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
-from scipy.spatial import cKDTree
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +24,8 @@ def behind_rows(density: NDArray[np.float32], points: Floats) -> NDArray[np.bool
     points : (n, 2) float64, pixels
         Dots that are there.
     """
+    from scipy.ndimage import distance_transform_edt  # a quarter of a second to import
+
     inside = density > 0.0
     h, w = density.shape
     x, y = points.astype(np.intp).T
@@ -47,6 +47,8 @@ def behind_rows(density: NDArray[np.float32], points: Floats) -> NDArray[np.bool
 
 def _have_two_next(points: Floats, within: Floats) -> NDArray[np.bool_]:
     """Tell which points have two others within a distance of theirs."""
+    from scipy.spatial import cKDTree  # which takes a while to import
+
     if len(points) < 3:
         return np.zeros(len(points), np.bool_)
     away, _ = cKDTree(points).query(points, k=3)

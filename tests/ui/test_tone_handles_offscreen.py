@@ -16,6 +16,7 @@ def tones(desk, tmp_path):
     Image.fromarray(np.tile(np.arange(256, dtype=np.uint8), (180, 1))).save(path)
     desk.host.drop(path)
     desk.host.until(lambda: desk.app.session.phase == "done", "the drawing")
+    desk.host.settle()
     if not desk.host.shown("Tones"):
         desk.host.click("More tones")
     desk.host.bring("Tones")
