@@ -345,6 +345,7 @@ def test_bursts_from_the_canvas_to_a_panel_and_back(
     desk.xdotool("key", "ctrl+z", "ctrl+z", "ctrl+z")
     until(lambda: dots() == 0, "the empty corner")
     desk.xdotool("key", "v", "ctrl+shift+p", "d", "r", "a", "w", "i", "n", "g", "Return")
+    until(lambda: desk.has(places["Start"], LIGHT.accent), "the panel Drawing")
     time.sleep(0.5)
     desk.xdotool("mousemove", *map(round, places["Number"]), "click", 1)
     desk.xdotool("key", "ctrl+a", "1", "2", "3", "Return")
