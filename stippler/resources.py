@@ -10,7 +10,7 @@ from pathlib import Path
 def _root() -> Path:
     here = Path(__file__).resolve().parent
     packed = here / "_data"
-    return packed if packed.is_dir() else here.parent
+    return packed if (packed / "shaders").is_dir() else here.parent  # kernels alone are no wheel
 
 
 def shaders() -> Path:
