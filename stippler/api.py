@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from numbers import Integral
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -192,6 +193,7 @@ def process(
     Deussen et al. 2000, section 4: each area is processed on its own.
     """
     from stippler.drawing.document import Document
+    from stippler.drawing.one_step import as_one_step
     from stippler.jobs.processing import process_now
 
     wanted = [area] if isinstance(area, int | str) else list(area)
@@ -202,9 +204,7 @@ def process(
     styles = [made.style_of(k) for k in ids]
     _warn_of(preflight.processing_warning(made, styles))
     document = Document(made)
-    document.begin("Areas")
-    document.own_by_place(np.arange(len(document.dots)))
-    document.commit()
+    as_one_step(document, "Areas", lambda d: d.own_by_place(np.arange(len(d.dots))))
     notes = process_now(document, ids)
     out = Drawing(**{f.name: getattr(made, f.name) for f in fields(_Drawing)})
     out.notes, out.inputs = notes, getattr(drawing, "inputs", ())
@@ -389,7 +389,7 @@ def _shape(values: Any) -> tuple[int, ...]:
 
 def _number(value: Any) -> int:
     """Return a whole number; that it is none is told by what takes it."""
-    return value if isinstance(value, int) else 0
+    return int(value) if isinstance(value, Integral) else 0
 
 
 def _polygon(area: Any) -> Polygon | MultiPolygon:

@@ -49,6 +49,19 @@ def bend_borders(document: Document, areas: Collection[int], bent: Deformation) 
         edit_areas_within(document, lambda before: follow(before, paths))
 
 
+def clear_grown_over(document: Document, areas: Collection[int], own: NDArray[np.int64]) -> None:
+    """Take away the free dots that areas have grown over, all but some: ink would lie there twice.
+
+    Parameters
+    ----------
+    own : ids of dots
+        That were the areas' before.
+    """
+    dots = document.dots
+    came = np.isin(dots.area, list(areas)) & ~dots.fixed
+    document.remove(np.flatnonzero(came & ~np.isin(dots.id, own)))
+
+
 @dataclass(frozen=True, slots=True)
 class MovingBorders:
     """Borders of areas that a deformation bends, as cubics; the page's own are none of them.

@@ -82,13 +82,11 @@ class Scaled(Job):
 
 def become(document: Document, drawing: Drawing, label: str) -> None:
     """Make a document's drawing another one, as one step; dots of the same id are the same."""
-    import numpy as np
-
     from stippler.drawing import records
-    from stippler.drawing.dot_edit import FIELDS
+    from stippler.drawing.one_step import as_one_step
+    from stippler.drawing.replace_dots import replace_dots
 
-    document.begin(label)
-    try:
+    def act(document: Document) -> None:
         for kind in records.KINDS:
             old = document.drawing
             if kind in records.SINGLE:
@@ -99,15 +97,6 @@ def become(document: Document, drawing: Drawing, label: str) -> None:
                 value = drawing.get(kind, k)
                 if value is not old.get(kind, k):
                     document.set(kind, k, value)
-        new = drawing.dots
-        stays = np.isin(document.dots.id, new.id)
-        document.remove(np.flatnonzero(~stays))
-        rows = document.rows(new.id)
-        known = np.flatnonzero(rows >= 0)
-        for name in FIELDS:
-            document.change(name, rows[known], getattr(new, name)[known])
-        document.insert(new.take(np.flatnonzero(rows < 0)))
-    except BaseException:
-        document.cancel()
-        raise
-    document.commit()
+        replace_dots(document, document.dots.id.copy(), drawing.dots)
+
+    as_one_step(document, label, act)

@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 from shapely import affinity
 
 from stippler.drawing import records
-from stippler.drawing.bend_areas import bend_borders
+from stippler.drawing.bend_areas import bend_borders, clear_grown_over
 from stippler.drawing.deformation import Deformation
 from stippler.drawing.document import Document
-from stippler.drawing.dot_edit import FIELDS
-from stippler.drawing.dots import ON_CURVE, Dots
+from stippler.drawing.dots import ON_CURVE
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.one_step import as_one_step
 from stippler.drawing.partition import Outline
+from stippler.drawing.replace_dots import replace_dots
 from stippler.errors import GeometryError, ParameterError
+from stippler.stippling.ground import brought_into
 from stippler.stippling.part_of_area import met_and_missed
 from stippler.stippling.scale import (
     Scaling,
@@ -75,7 +76,7 @@ def _scale(document: Document, area: int, scaling: Scaling) -> None:
         about = _middle(document, area, part, f)
         _bend(document, area, f, about)
         part = document.partition.part_of(area)
-        _clear(document, part, own)
+        clear_grown_over(document, (area,), own)
     else:
         about = (0.0, 0.0)
     rows = document.rows(own)
@@ -91,7 +92,9 @@ def _scale(document: Document, area: int, scaling: Scaling) -> None:
         by_hand = hand_sizes(document.drawing, [area]).get(area)
         made = replace(document.drawing, dots=dots)
         solve_sizes(made, area, found.get(area, part), scaling, by_hand)
-    _put(document, area, before, dots, part)
+    dots.position_mm[:] = _inside(dots.position_mm, part)
+    dots.area[:] = area
+    replace_dots(document, before.id, dots)
 
 
 def _middle(document: Document, area: int, part: Outline, f: float) -> tuple[float, float]:
@@ -123,37 +126,13 @@ def _bend(document: Document, area: int, f: float, about: tuple[float, float]) -
             document.set(records.PATTERN, k, scaled_pattern(pattern, f, (x, y)))
 
 
-def _clear(document: Document, part: Outline, own: NDArray[np.int64]) -> None:
-    """Take away the free dots of others that now lie in an area."""
-    dots = document.dots
-    inside = shapely.contains_xy(part, *dots.position_mm.T)
-    document.remove(np.flatnonzero(inside & ~dots.fixed & ~np.isin(dots.id, own)))
-
-
-def _put(document: Document, area: int, before: Dots, after: Dots, part: Outline) -> None:
-    """Let dots take the place of others of an area; those of the same id are the same."""
-    after.position_mm[:] = _inside(after.position_mm, part)
-    after.area[:] = area
-    stays = np.isin(before.id, after.id)
-    document.remove(document.rows(before.id[~stays]))
-    rows = document.rows(after.id)
-    known = np.flatnonzero(rows >= 0)
-    for name in FIELDS:
-        document.change(name, rows[known], getattr(after, name)[known])
-    document.insert(after.take(np.flatnonzero(rows < 0)))
-
-
 def _inside(position_mm: NDArray[np.float64], part: Outline) -> NDArray[np.float64]:
     """Return places brought into an area."""
     out = np.flatnonzero(~shapely.intersects_xy(part, *position_mm.T))
     if not len(out) or part.is_empty:
         return position_mm
     found = position_mm.copy()
-    inner = shapely.buffer(part, -_WITHIN_MM)
-    lines = shapely.shortest_line(
-        part if inner.is_empty else inner, shapely.points(position_mm[out])
-    )
-    found[out] = shapely.get_coordinates(lines)[::2]
+    found[out] = brought_into(part, position_mm[out], _WITHIN_MM)
     return found
 
 

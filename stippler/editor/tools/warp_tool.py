@@ -216,12 +216,12 @@ class Warping(Drag):
         document = desk.document
         if not document.in_stroke or self.now is None:
             return RESTING
-        from stippler.drawing.bend_areas import bend_borders
+        from stippler.drawing.bend_areas import bend_borders, clear_grown_over
 
         try:
             if self.target.areas:
                 bend_borders(document, self.target.areas, self.now)
-                self._clear(document)
+                clear_grown_over(document, self.target.areas, self.target.ids)
                 _bend_patterns(document, self.target, self.now)
         except GeometryError as error:
             desk.say(str(error), WARNING)
@@ -233,12 +233,6 @@ class Warping(Drag):
         clear_zones(document, document.rows(self.target.ids), desk.say)
         document.commit()
         return RESTING
-
-    def _clear(self, document: Document) -> None:
-        """Take away the free dots of others that the areas have grown over: ink lay there twice."""
-        dots = document.dots
-        came = np.isin(dots.area, self.target.areas) & ~dots.fixed
-        document.remove(np.flatnonzero(came & ~np.isin(dots.id, self.target.ids)))
 
     def _keep_tone(self, document: Document, bent: Deformation) -> None:
         """Give dots their areas and sizes anew, and relax those whose room has changed."""
