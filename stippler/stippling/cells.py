@@ -331,8 +331,10 @@ class Cells:
             )  # fmt: skip
             if not done:
                 return False
-            rows = np.flatnonzero(new.kind == TOO_MANY_CORNERS).astype(np.int32)
-            which = rows if is_all else np.intersect1d(which, rows).astype(np.int32)
+            if is_all:
+                which = np.flatnonzero(new.kind == TOO_MANY_CORNERS).astype(np.int32)
+            else:
+                which = which[new.kind[which] == TOO_MANY_CORNERS]
             is_all, n, cap = False, len(which), 16 * cap
         return True
 

@@ -18,6 +18,7 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.style import MAX_DOTS
 from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.darkness_levels import look_up_levels
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
@@ -103,9 +104,11 @@ class PageRaster:
         """Dots per square pixel, bleed included; white stays exactly 0."""
         darkest = float(self.darkness.max()) or 1.0
         table = self.rule.density(np.linspace(0.0, darkest, _LEVELS + 1)).astype(np.float32)
-        level = np.ceil(self.darkness * np.float32(_LEVELS / darkest))
-        level = np.minimum(level, np.float32(_LEVELS)).astype(np.uint16)
-        return self.with_bleed(table[level])
+        density = np.empty(self.darkness.shape, np.float32)
+        scale = float(np.float32(_LEVELS / darkest))
+        rows = len(density)
+        parallel_for(look_up_levels, rows, self.darkness, scale, table, density, grain=64)
+        return self.with_bleed(density)
 
     def ink_field(self) -> DensityField:
         """Return the darkness as a weight of the page, bleed included, in mm.
