@@ -13,6 +13,9 @@ from stippler.kernels.machine.jit import inline, kernel
 Array = NDArray[Any]
 
 _NEIGHBOURS = 7
+_AROUND = 2  # grid cells to each side that most dots can be judged by
+_LOOKED_AT = 64  # dots in them that are counted at most
+_SURELY = 1.0 + 1e-12  # what rounding may be off
 
 
 @inline
@@ -56,6 +59,49 @@ def _look(
     return nearest
 
 
+@inline
+def _is_clear(
+    xy: Array, i: int, cell_start: Array, frame: Array, share: float, enough: float,
+    nearest: Array, seen: Array,
+) -> bool:  # fmt: skip
+    """Whether a dot is sure to be far enough from its nearest, by the grid cells around it alone.
+
+    So it is if seven dots are no farther than the way to the nearest by `share`: the seventh then
+    is not either. `nearest` gets the nearest; `seen` is scratch.
+    """
+    side = frame[2]
+    nx = int(frame[3])
+    ny = int(frame[4])
+    x = xy[i, 0]
+    y = xy[i, 1]
+    ix = min(max(int(x / side), 0), nx - 1)
+    iy = min(max(int(y / side), 0), ny - 1)
+    first = max(ix - _AROUND, 0)
+    last = min(ix + _AROUND, nx - 1)
+    nearest2 = np.inf
+    k = 0
+    for row in range(max(iy - _AROUND, 0), min(iy + _AROUND, ny - 1) + 1):
+        for j in range(cell_start[row * nx + first], cell_start[row * nx + last + 1]):
+            d2 = (xy[j, 0] - x) ** 2 + (xy[j, 1] - y) ** 2
+            if j != i:
+                if d2 < nearest2:
+                    nearest2 = d2
+                    nearest[i] = j
+                if k < len(seen):
+                    seen[k] = d2
+                    k += 1
+    known = _AROUND * side  # no dot beyond these cells is nearer
+    if nearest2 > known * known:
+        return False
+    if nearest2 >= enough * enough * _SURELY:
+        return True
+    reach2 = nearest2 / (share * share) / _SURELY
+    n = 0
+    for m in range(k):
+        n += seen[m] <= reach2
+    return n >= _NEIGHBOURS
+
+
 @kernel
 def find_close(
     start: int,
@@ -85,13 +131,15 @@ def find_close(
         0 for a dot that is far enough, or has fewer neighbours than seven.
     """
     distance2 = np.empty(_NEIGHBOURS)
+    seen = np.empty(_LOOKED_AT)
     for i in range(start, stop):
+        lack[i] = 0.0
         if not awake[i]:
-            lack[i] = 0.0
+            continue
+        if _is_clear(xy, i, cell_start, frame, share, enough[i], nearest, seen):
             continue
         j = _look(xy, i, cell_start, frame, distance2, -1)
         nearest[i] = j
-        lack[i] = 0.0
         seventh2 = distance2[_NEIGHBOURS - 1]
         if seventh2 < np.inf:
             wanted = min(share * math.sqrt(seventh2), enough[i])
