@@ -60,14 +60,13 @@ def _look(
 
 
 @inline
-def _is_clear(
+def _lack_around(
     xy: Array, i: int, cell_start: Array, frame: Array, share: float, enough: float,
-    nearest: Array, seen: Array,
-) -> bool:  # fmt: skip
-    """Whether a dot is sure to be far enough from its nearest, by the grid cells around it alone.
+    nearest: Array, seen: Array, distance2: Array,
+) -> float:  # fmt: skip
+    """Return what `find_close` does by the grid cells around a dot alone; -1 if they do not tell.
 
-    So it is if seven dots are no farther than the way to the nearest by `share`: the seventh then
-    is not either. `nearest` gets the nearest; `seen` is scratch.
+    `nearest` gets the nearest; `seen` and `distance2` are scratch.
     """
     side = frame[2]
     nx = int(frame[3])
@@ -79,27 +78,45 @@ def _is_clear(
     first = max(ix - _AROUND, 0)
     last = min(ix + _AROUND, nx - 1)
     nearest2 = np.inf
-    k = 0
+    n = 0
     for row in range(max(iy - _AROUND, 0), min(iy + _AROUND, ny - 1) + 1):
         for j in range(cell_start[row * nx + first], cell_start[row * nx + last + 1]):
             d2 = (xy[j, 0] - x) ** 2 + (xy[j, 1] - y) ** 2
-            if j != i:
-                if d2 < nearest2:
-                    nearest2 = d2
-                    nearest[i] = j
-                if k < len(seen):
-                    seen[k] = d2
-                    k += 1
+            if j == i:
+                continue
+            if n == len(seen):
+                return -1.0
+            seen[n] = d2
+            n += 1
+            if d2 < nearest2:
+                nearest2 = d2
+                nearest[i] = j
     known = _AROUND * side  # no dot beyond these cells is nearer
-    if nearest2 > known * known:
-        return False
+    known2 = known * known
+    if n < _NEIGHBOURS or nearest2 > known2:
+        return -1.0
     if nearest2 >= enough * enough * _SURELY:
-        return True
+        return 0.0
     reach2 = nearest2 / (share * share) / _SURELY
-    n = 0
-    for m in range(k):
-        n += seen[m] <= reach2
-    return n >= _NEIGHBOURS
+    within = 0
+    for k in range(n):
+        within += seen[k] <= reach2
+    if within >= _NEIGHBOURS:
+        return 0.0  # the seventh is no farther than the nearest is by `share`
+    distance2[:] = np.inf
+    last = _NEIGHBOURS - 1
+    for k in range(n):
+        d2 = seen[k]
+        if d2 < distance2[last]:
+            at = last
+            while at > 0 and distance2[at - 1] > d2:
+                distance2[at] = distance2[at - 1]
+                at -= 1
+            distance2[at] = d2
+    if distance2[last] > known2:
+        return -1.0
+    wanted = min(share * math.sqrt(distance2[last]), enough)
+    return max(wanted - math.sqrt(nearest2), 0.0)
 
 
 @kernel
@@ -136,7 +153,9 @@ def find_close(
         lack[i] = 0.0
         if not awake[i]:
             continue
-        if _is_clear(xy, i, cell_start, frame, share, enough[i], nearest, seen):
+        found = _lack_around(xy, i, cell_start, frame, share, enough[i], nearest, seen, distance2)
+        if found >= 0.0:
+            lack[i] = found
             continue
         j = _look(xy, i, cell_start, frame, distance2, -1)
         nearest[i] = j
