@@ -120,16 +120,19 @@ def parts() -> Iterator[tuple[str, Callable[[], object]]]:
     from stippler.drawing.drawing import Drawing
     from stippler.drawing.reference import Reference
     from stippler.drawing.style import FIRST_DOTS, Style
+    from stippler.stippling.page_raster import FEWEST_WITH_BLEED
     from stippler.stippling.stipple import stages
 
     ramp = np.linspace(0, 1, 64 * 64, dtype=np.float32).reshape(64, 64)
     reference = Reference(ramp, 20.0)
 
-    def draw(**options: Any) -> Drawing:
-        *_, last = stages(reference, Style(n_dots=300, iterations=3, **options))
+    def draw(n_dots: int = 300, **options: Any) -> Drawing:
+        *_, last = stages(reference, Style(n_dots=n_dots, iterations=3, **options))
         return Drawing.from_reference(reference, last.position_mm, last.radius_mm)
 
     yield "relaxation and tone", draw
+    yield "dots that bleed", partial(draw, 2 * FEWEST_WITH_BLEED)
+    yield "long dots", partial(draw, elongation=2.0)
     yield "clusters", _relax_a_cluster
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
@@ -205,8 +208,8 @@ def _write(drawing: Drawing) -> None:
         with tempfile.TemporaryDirectory() as folder:
             for one in FORMATS:
                 save(drawing, Path(folder) / f"drawing{one.endings[0]}")
-            line: dict[str, Any] = {"one_line": CLOSED, "caption": "A", "round_dots": COMPOUND}
-            save(drawing, Path(folder) / "line.svg", **line)
+            save(drawing, Path(folder) / "strokes.svg", round_dots=COMPOUND)
+            save(drawing, Path(folder) / "line.svg", one_line=CLOSED, caption="A")
             save(drawing, Path(folder) / "line.png", one_line=CLOSED, dpi=30)
         with contextlib.suppress(DisplayError):  # without OpenGL nothing needs those kernels
             for px_per_mm in (2.0, 8.0):  # seen from afar; near enough to look rough

@@ -33,6 +33,11 @@ with tempfile.TemporaryDirectory() as folder:
                     drawing.save(f"{folder}/d.{ending}", dpi=60)
                 if "numba" in sys.modules:
                     late.append([method, tone, list(options)])
+    for dots, options in ((1000, {}), (200, {"elongation": 2.0})):  # enough to bleed; long ones
+        drawing = stippler.stipple(picture, dots, 50, iterations=2, **options)
+        drawing.save(f"{folder}/d.svg", round_dots="compound")
+        if "numba" in sys.modules:
+            late.append([dots, list(options)])
 print(json.dumps(late))
 """
 

@@ -56,9 +56,11 @@ def placed(draft: Draft) -> Iterator[tuple[float, Floats]]:
         yield 1.0, rows_along(density, angle, draft.n_wanted, style.seed)
         return
     if style.first_dots == "pulse-density":
-        halftone = pulses(density, style.growth, start=style.start, seed=style.seed)
+        halftone = pulses(
+            density, style.growth, start=style.start, seed=style.seed, origin_px=raster.bleed
+        )
         for share, first in halftone:
-            yield share, first.position_px - raster.bleed
+            yield share, first.position_px
         return
     if style.first_dots == "random":
         yield 1.0, random_dots(density, style.seed) - raster.bleed

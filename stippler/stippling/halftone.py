@@ -67,6 +67,7 @@ def pulse_density(
     *,
     start: str = "top",
     seed: int = 1,
+    origin_px: float = 0.0,
 ) -> Iterator[tuple[float, FirstDots]]:
     """Grow regions that hold one pulse each; yield the share done and all dots so far.
 
@@ -81,6 +82,8 @@ def pulse_density(
     seed : int
         Each region's growth is skewed a little, and the front from the top undulates, as if by
         chance, so that constant density shows no direction; this is the chance.
+    origin_px : float
+        Where in the field, to the right and down, positions are counted from.
 
     Notes
     -----
@@ -101,7 +104,7 @@ def pulse_density(
     position, region = np.empty((most, 2)), np.empty(most, np.float32)
     for share, first in grown(charge, asked, growth, start, seed, reach, spacing):
         before, n = n, len(first.position_px)
-        position[before:n] = first.position_px[before:] / s + corner
+        position[before:n] = first.position_px[before:] / s + corner - origin_px
         region[before:n] = first.region_px[before:] / np.float32(s * s)
         yield share, FirstDots(position[:n], region[:n])
 

@@ -18,6 +18,7 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.style import MAX_DOTS
 from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
+from stippler.kernels.tone.darkness_levels import look_up_levels
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
@@ -31,6 +32,7 @@ _LEVELS = 65_535
 _MOST_CELLS = 100_000_000  # of a halftone, whose cells are as fine as its densest part asks for
 _FARTHEST = 2.0  # radii beyond the edge from which a dot is drawn back to it, at most
 _WEIGHED = 8.0  # pixels of the densest dots' cells by which these are weighed, at least
+_BAND, _BANDS = 16_384, 64  # dots that numpy is given at a time: they fit the cache; at most
 _INSIDE = 1e-9  # of the page; no dot lies on its edge itself
 
 
@@ -103,9 +105,11 @@ class PageRaster:
         """Dots per square pixel, bleed included; white stays exactly 0."""
         darkest = float(self.darkness.max()) or 1.0
         table = self.rule.density(np.linspace(0.0, darkest, _LEVELS + 1)).astype(np.float32)
-        level = np.ceil(self.darkness * np.float32(_LEVELS / darkest))
-        level = np.minimum(level, np.float32(_LEVELS)).astype(np.uint16)
-        return self.with_bleed(table[level])
+        density = np.empty(self.darkness.shape, np.float32)
+        scale = float(np.float32(_LEVELS / darkest))
+        rows = len(density)
+        parallel_for(look_up_levels, rows, self.darkness, scale, table, density, grain=64)
+        return self.with_bleed(density)
 
     def ink_field(self) -> DensityField:
         """Return the darkness as a weight of the page, bleed included, in mm.
@@ -166,14 +170,27 @@ class PageRaster:
 
     def radii(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the radius that the rule gives each dot of the page."""
-        return self.rule.radius(self.darkness_under(points))
+        radii = np.empty(len(points))
+
+        def part(start: int, stop: int) -> None:
+            radii[start:stop] = self.rule.radius(self.darkness_under(points[start:stop]))
+
+        parallel_for(part, len(points), grain=_BAND, chunks=_BANDS)
+        return radii
 
     def wanted_at(
         self, points: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the radius and the density that the rule gives where each dot of the page lies."""
-        values = self.darkness_under(points)
-        return self.rule.radius(values), self.rule.density(values)
+        radii, density = np.empty(len(points)), np.empty(len(points))
+
+        def part(start: int, stop: int) -> None:
+            values = self.darkness_under(points[start:stop])
+            radii[start:stop] = self.rule.radius(values)
+            density[start:stop] = self.rule.density(values)
+
+        parallel_for(part, len(points), grain=_BAND, chunks=_BANDS)
+        return radii, density
 
     def density_under(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the density that the rule gives where dots lie; 0 beyond the bleed."""
@@ -183,7 +200,7 @@ class PageRaster:
         ])  # fmt: skip
         density: NDArray[np.float64] = self.rule.density(self.darkness_under(mirrored))
         beyond = np.abs(points - 0.5 * np.array([w, h])) > 0.5 * np.array([w, h]) + self.bleed
-        density[beyond.any(axis=1)] = 0.0
+        density[beyond[:, 0] | beyond[:, 1]] = 0.0
         return density
 
     def darkness_under(self, points: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
+from stippler.kernels.tone.darkness_levels import count_levels
 
 _COVERAGE = np.array([0.0, 0.8, 0.85, 0.9, 0.95, 0.98, 0.99, 1.0])
 _INK = np.array([0.0, 0.8, 0.855, 0.925, 1.02, 1.11, 1.16, 1.3])
@@ -159,9 +160,10 @@ _Levels = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 def _histogram(darkness: NDArray[np.float32]) -> _Levels:
     """Return pixels per level and the levels; white apart, at exactly 0."""
-    level = np.ceil(darkness.ravel() * np.float32(_BINS)).astype(np.intp)
-    counts = np.bincount(level, minlength=_BINS + 1).astype(np.float64)
-    sums = np.bincount(level, darkness.ravel(), minlength=_BINS + 1).astype(np.float64)
+    flat = darkness.ravel().view()
+    flat.flags.writeable = False  # kernels compile for one kind
+    counts, sums = np.zeros(_BINS + 1), np.zeros(_BINS + 1)
+    count_levels(flat, counts, sums)
     return counts, np.divide(sums, counts, out=np.zeros_like(sums), where=counts > 0)
 
 
