@@ -19,11 +19,10 @@ def by_lanes(outline, n, x, y, field, found):
 
 @kernel
 def side_by_side(outline, n, x, y, field, found):
-    h, w = field.window[0, 1], field.window[0, 2]
+    first, h, w = field.window[0, 0], field.window[0, 1], field.window[0, 2]
     for s in range(n):
-        m, mx, my = integrate_edge(
-            field.sums, 0, h, w, x, y, outline[s, 0], outline[s, 1], outline[s, 2], outline[s, 3]
-        )
+        u, v, u1, v1 = outline[s, 0], outline[s, 1], outline[s, 2], outline[s, 3]
+        m, mx, my = integrate_edge(field.sums, first, h, w, x, y, u, v, u1, v1)
         found[0] += m
         found[1] += mx
         found[2] += my
@@ -34,8 +33,10 @@ def field_of(values):
     sums = np.zeros((h, w + 1, 2))
     sums[:, 1:, 0] = np.cumsum(values, axis=1)
     sums[:, 1:, 1] = np.cumsum(values * (np.arange(w) + 0.5), axis=1)
-    window = np.array([[0, h, w, 0, 0, 0]])
-    return Field(sums.ravel(), np.array([[0.0, 0.0, 1.0, 1.0]]), window)
+    window = np.array([[5, h, w, 0, 0, 0]])  # others' sums lie before it
+    return Field(
+        np.concatenate([np.full(10, 7.0), sums.ravel()]), np.array([[0.0, 0.0, 1.0, 1.0]]), window
+    )
 
 
 def outline_of(corners, x, y):

@@ -53,7 +53,7 @@ def walk_sides(
     """Return what sides first .. first + 7 of n give of mass and both its moments about (x, y).
 
     Sides are the rows of `out`, lengths of which times (ku, kv) are pixels. The window's sums begin
-    at `start`, it has h rows, one at least, and w columns; outside it f is 0.
+    with pair `start`, it has h rows, one at least, and w columns; outside it f is 0.
 
     Returns
     -------
@@ -120,7 +120,7 @@ def walk_sides(
         stride = builder.shl(builder.add(w_, simd._I8(1)), simd._I8(4))
         stride = simd._splat(builder, stride, AT_ONCE)
         rows = builder.fptosi(row_number.value, read.whole)
-        begin = builder.add(builder.ptrtoint(field, simd._I8), builder.shl(start_, simd._I8(3)))
+        begin = builder.add(builder.ptrtoint(field, simd._I8), builder.shl(start_, simd._I8(4)))
         rows = builder.add(simd._splat(builder, begin, AT_ONCE), builder.mul(rows, stride))
         base = read.pairs(x.floor().at_least(0.0).at_most(width))
 
