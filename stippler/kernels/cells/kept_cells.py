@@ -151,7 +151,7 @@ def _has_pair(star: I4, n_star: U1, i: int, a: int, b: int) -> bool:
     """Whether dot i lists a and, right after it, b; an edge in its place says nothing."""
     m = ZERO + n_star[i]
     if m < LANES:  # behind the last the first is listed once more
-        return (pair_mask(star, i, a, b) & ((1 << m) - 1)) != 0
+        return bool(pair_mask(star, i, a, b) & ((1 << m) - 1))
     for k in range(m):  # noqa: SIM110 - a kernel
         if star[i, k] == a and star[i, k + 1 if k + 1 < m else 0] == b:
             return True
