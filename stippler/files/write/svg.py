@@ -15,7 +15,6 @@ from stippler.errors import ParameterError
 from stippler.files.write.format import Values
 from stippler.files.write.formats import CIRCLES, COMPOUND, MAX_DECIMALS
 from stippler.files.write.names import one_line
-from stippler.files.write.plot_order import sorted_dots
 from stippler.files.write.sheet import (
     ROUGH,
     Layer,
@@ -26,7 +25,6 @@ from stippler.files.write.sheet import (
     sheet_of,
     smallest_mm,
 )
-from stippler.files.write.sizes import by_size
 from stippler.files.write.xml_text import quoted
 from stippler.kernels.shapes import svg_text
 from stippler.kernels.shapes.number_text import number_rows
@@ -87,6 +85,8 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
     In a layer the round dots come first, then smooth ellipses, then rough outlines. A path keeps
     within 1 % of the radius of the formula in `kernels/shapes/dot_shape.py`.
     """
+    from stippler.files.write.plot_order import sorted_dots
+
     decimals = values.get("decimals")
     if decimals is None:
         decimals = _decimals_for(smallest_mm(sheet))
@@ -241,6 +241,8 @@ def _whole(radius: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _strokes(dots: Dots, decimals: int) -> Iterator[bytes]:
     """Round dots of a size as one path: lines of no length with round ends."""
+    from stippler.files.write.sizes import by_size
+
     for width_mm, rows in by_size(dots.radius_mm):
         yield f'<path stroke-width="{number(width_mm)}" d="'.encode()
         scale = 10.0**decimals
