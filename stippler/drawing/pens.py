@@ -9,6 +9,8 @@ from stippler.drawing.dots import MAX_ELONGATION, Dots
 from stippler.drawing.shape_change import ShapeChange, to
 from stippler.errors import ParameterError
 
+_ROUND = (1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True, slots=True)
 class Pen:
@@ -54,9 +56,19 @@ class Pen:
             scatter_rad=self.spread_rad,
         )
 
+    @property
+    def _leaves_round(self) -> bool:
+        return (*self.elongation, *self.roughness, self.angle_rad, self.spread_rad) == _ROUND
+
     def drawn(self, dots: Dots) -> Dots:
         """Return dots as this pen draws them; they share the arrays that stay."""
+        if self._leaves_round and not dots.angle_rad.any() and _are_round(dots):
+            return dots
         return replace(dots, **self.change.of(dots))  # type: ignore[arg-type]
+
+
+def _are_round(dots: Dots) -> bool:
+    return bool((dots.elongation == 1.0).all()) and not dots.roughness.any()
 
 
 def _check_range(name: str, limits: tuple[float, float], low: float, high: float) -> None:

@@ -44,6 +44,9 @@ class Crossing(Protocol):
 
 CORNER_CAP = MANY
 GRAIN = 4096
+GATHERED = 32
+"""Ranges for each thread in which rows are brought into order: a range of all fits the cache."""
+
 FEW = 256
 """Smallest share of a thread where cells are computed one by one, and of a list of them."""
 
@@ -421,17 +424,25 @@ class Cells:
             args = (renumber_stars, n, order, new_row, self._star, star)
             if not parallel_for(*args, grain=GRAIN, cancel=cancel):
                 return False
-        for name in names:
-            if cancel is not None and cancel():
-                return False
-            sorted_rows[name] = getattr(self, name)[order]
+        old: dict[str, Any] = {name: getattr(self, name) for name in names}
+        old |= {"x": self.xs, "y": self.ys}
         if len(self.rules.table):
-            wants, radius = self.rules.wants[order], self.rules.radius
-            radius = radius[order] if len(radius) else radius
-            self.rules = self.rules._replace(wants=wants, radius=radius)
-        for name, rows in sorted_rows.items():
+            old["wants"] = self.rules.wants
+        if len(self.rules.radius):
+            old["radius"] = self.rules.radius
+        new = {name: np.empty((n, *rows.shape[1:]), rows.dtype) for name, rows in old.items()}
+
+        def part(start: int, stop: int) -> None:
+            for name, rows in old.items():
+                new[name][start:stop] = rows[order[start:stop]]
+
+        if not parallel_for(part, n, grain=GRAIN, chunks=GATHERED, cancel=cancel):
+            return False
+        of_rules = {name: new.pop(name) for name in ("wants", "radius") if name in new}
+        self.rules = self.rules._replace(**of_rules)
+        self.xs[:n], self.ys[:n] = new.pop("x"), new.pop("y")
+        for name, rows in (sorted_rows | new).items():
             setattr(self, name, rows)
-        self.xs[:n], self.ys[:n] = self.xs[order], self.ys[order]
         self._slack = 0.0
         self._bound_crowds()
         self._has_stars = self._has_stars and with_stars

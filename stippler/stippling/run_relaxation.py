@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.kernels.machine.pool import parallel_for
 from stippler.stippling.density import DensityField
 from stippler.stippling.field_sums import Weights
 from stippler.stippling.ground import Ground
@@ -18,6 +19,8 @@ _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
 _STEPS_TO_INK = 3  # the last, after the rules
 _BROKEN = 0.35  # of a spacing, by which first dots are moved so that no order is left to them
+
+_BAND, _BANDS = 16_384, 64  # dots that numpy is given at a time: they fit the cache; at most
 
 _READ_LATER = np.empty((0, 2))
 
@@ -113,14 +116,19 @@ def _with_order_broken(
     Moved each by itself, dots keep the evenness that they have over longer ways.
     """
     by_chance = np.random.default_rng([seed, len(at)]).normal(0.0, _BROKEN, at.shape)
-    px = at / raster.pixel_mm
-    density = raster.density_under(px)
-    moved = px + by_chance / np.sqrt(np.maximum(density, 1e-30))[:, None]
-    stays = ~(raster.density_under(moved) > 0.0) | ~(density > 0.0)
-    if fixed is not None:
-        stays |= fixed
-    moved[stays] = px[stays]
-    out: NDArray[np.float64] = moved * raster.pixel_mm
+    out = np.empty_like(by_chance)
+
+    def part(start: int, stop: int) -> None:
+        px = at[start:stop] / raster.pixel_mm
+        density = raster.density_under(px)
+        moved = px + by_chance[start:stop] / np.sqrt(np.maximum(density, 1e-30))[:, None]
+        stays = ~(raster.density_under(moved) > 0.0) | ~(density > 0.0)
+        if fixed is not None:
+            stays |= fixed[start:stop]
+        moved[stays] = px[stays]
+        out[start:stop] = moved * raster.pixel_mm
+
+    parallel_for(part, len(at), grain=_BAND, chunks=_BANDS)
     return out
 
 

@@ -25,9 +25,12 @@ from stippler.files.write.sheet import (
     sheet_of,
     smallest_mm,
 )
+from stippler.files.write.sizes import sorted_by_size
 from stippler.files.write.xml_text import quoted
 from stippler.kernels.shapes import svg_text
 from stippler.kernels.shapes.number_text import number_rows
+
+Radii = NDArray[np.float32]
 
 MIN_DECIMALS = 3
 _FINE = 0.02  # of the smallest radius: a last decimal of so much puts nothing more than 1 % off
@@ -35,6 +38,7 @@ TAP_MM = 0.01  # pen taps are lines of this length, which no plotter program dro
 
 SEGMENTS = ((ROUGH, 4), (0.08, 12), (0.2, 16), (0.4, 20), (0.55, 24), (1.0, 32))
 _BLOCK = 8192
+_STROKES_BLOCK = 65_536  # enough for all cores
 _PATH_BLOCK = 2048  # their text is made in room that stays in the cache
 _LINE_DECIMALS = 1  # of lines and shapes, more than positions get
 _RADIUS_DECIMALS = 1
@@ -202,7 +206,7 @@ def _dots(dots: Dots, decimals: int, round_dots: str, color: str) -> Iterator[by
     elif len(is_round):
         yield (f'<g fill="none" stroke="{color}" stroke-linecap="round">\n').encode()
         draw = _strokes if round_dots == COMPOUND else _taps
-        yield from draw(dots.take(is_round), decimals)
+        yield from draw(dots.position_mm[is_round], dots.radius_mm[is_round], decimals)
         yield b"</g>\n"
     for some in _blocks(smooth, _PATH_BLOCK):
         yield svg_text.paths(dots.take(some), SEGMENTS[0][1], decimals)
@@ -239,29 +243,32 @@ def _whole(radius: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.floor(exact + np.minimum(turns, 0.999)))
 
 
-def _strokes(dots: Dots, decimals: int) -> Iterator[bytes]:
+def _strokes(position_mm: NDArray[np.float64], radius_mm: Radii, decimals: int) -> Iterator[bytes]:
     """Round dots of a size as one path: lines of no length with round ends."""
-    from stippler.files.write.sizes import by_size
+    diameter, first, rows = sorted_by_size(radius_mm)
+    texts = [b'"/>\n<path stroke-width="%b" d="' % number(one).encode() for one in diameter]
+    texts[0] = texts[0].removeprefix(b'"/>\n')
+    place = np.rint(position_mm[rows] * 10.0**decimals).astype(np.int64)
+    steps = np.diff(place, axis=0, prepend=0)
+    steps[first] = place[first]
+    opens = np.full(len(rows), -1, np.int32)
+    opens[first] = np.arange(len(first))
+    for start in range(0, len(rows), _STROKES_BLOCK):
+        some = slice(start, start + _STROKES_BLOCK)
+        yield svg_text.strokes(steps[some], opens[some], texts, decimals)
+    yield b'"/>\n'
 
-    for width_mm, rows in by_size(dots.radius_mm):
-        yield f'<path stroke-width="{number(width_mm)}" d="'.encode()
-        scale = 10.0**decimals
-        place = np.rint(dots.position_mm[rows] * scale)
-        steps = np.diff(place, axis=0, prepend=np.zeros((1, 2))) / scale
-        yield svg_text.relative_moves(steps, decimals)
-        yield b'"/>\n'
 
-
-def _taps(dots: Dots, decimals: int) -> Iterator[bytes]:
+def _taps(position_mm: NDArray[np.float64], radius_mm: Radii, decimals: int) -> Iterator[bytes]:
     """Round dots as very short lines, one path each, which plotter programs keep and sort."""
     half = TAP_MM / 2
     # as wide as leaves the ink what it is, the short line included
-    wide = 2 * (np.hypot(TAP_MM, math.pi * dots.radius_mm.astype(np.float64)) - TAP_MM) / math.pi
+    wide = 2 * (np.hypot(TAP_MM, math.pi * radius_mm.astype(np.float64)) - TAP_MM) / math.pi
     pieces = (b'<path stroke-width="', b'" d="M', b" ", f'h{number(TAP_MM)}"/>\n'.encode())
     finer = decimals + 1
-    for start in range(0, len(dots), _BLOCK):
+    for start in range(0, len(wide), _BLOCK):
         some = slice(start, start + _BLOCK)
-        x, y = dots.position_mm[some].T
+        x, y = position_mm[some].T
         yield number_rows((wide[some], x - half, y), (finer, finer, decimals), pieces)
 
 

@@ -12,16 +12,22 @@ from typing import Any
 
 from stippler.kernels.cells.clip import outline_piece
 from stippler.kernels.cells.field import COLUMNS, FIRST, ROWS, integrate_edge
+from stippler.kernels.cells.field_lanes import walk_sides
 from stippler.kernels.cells.tables import F8, I4, Border, Field, Pads, Spot
 from stippler.kernels.cells.voronoi import cut_cell, reach2_of_cell
+from stippler.kernels.machine.eight import AT_ONCE
 from stippler.kernels.machine.jit import ZERO, inline, inner
-from stippler.kernels.machine.simd import get
+from stippler.kernels.machine.processor import reads_lanes
+from stippler.kernels.machine.simd import get, lowest_bit
 
 NOWHERE = -(1 << 30)
 """Number of a side that is neither a dot's nor a border's: of what the search has seen so far."""
 
 _CLOSE = 1e-13  # of a cell's reach: what is nearer to a line than this may be on either side of it
 _ROUNDING = 1e-12  # of all that is added and taken away again in a sum
+
+
+_IN_LANES = reads_lanes()
 
 
 @inline
@@ -155,15 +161,29 @@ def sum_field(
     px, py = (x - frame[c, 0]) * ku, (y - frame[c, 1]) * kv
     start, h, w = window[c, FIRST], window[c, ROWS], window[c, COLUMNS]
     total = mu = mv = gross = 0.0
-    for s in range(n):
-        m, mx, my = integrate_edge(
-            field.sums, start, h, w, px, py,
-            out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv,
-        )  # fmt: skip
-        total += m
-        gross += abs(m)
-        mu += mx
-        mv += my
+    if h == 0:
+        return 0.0, 0.0, 0.0
+    for first in range(0, n, AT_ONCE):
+        left = (1 << min(n - first, AT_ONCE)) - 1
+        if _IN_LANES:
+            m, mx, my, size, left = walk_sides(
+                out, ZERO + first, ZERO + n, ku, kv, field.sums, start, h, w, px, py
+            )
+            total += m
+            gross += size
+            mu += mx
+            mv += my
+        while left != 0:
+            s = first + lowest_bit(left)
+            left &= left - 1
+            m, mx, my = integrate_edge(
+                field.sums, start, h, w, px, py,
+                out[s, 0] * ku, out[s, 1] * kv, out[s, 2] * ku, out[s, 3] * kv,
+            )  # fmt: skip
+            total += m
+            gross += abs(m)
+            mu += mx
+            mv += my
     if total <= _ROUNDING * gross:
         return 0.0, 0.0, 0.0
     size = frame[c, 2] * frame[c, 3]

@@ -13,6 +13,9 @@ from stippler.kernels.machine.jit import inline, kernel
 Array = NDArray[Any]
 
 _NEIGHBOURS = 7
+_AROUND = 2  # grid cells to each side that most dots can be judged by
+_LOOKED_AT = 64  # dots in them that are counted at most
+_SURELY = 1.0 + 1e-12  # what rounding may be off
 
 
 @inline
@@ -56,6 +59,66 @@ def _look(
     return nearest
 
 
+@inline
+def _lack_around(
+    xy: Array, i: int, cell_start: Array, frame: Array, share: float, enough: float,
+    nearest: Array, seen: Array, distance2: Array,
+) -> float:  # fmt: skip
+    """Return what `find_close` does by the grid cells around a dot alone; -1 if they do not tell.
+
+    `nearest` gets the nearest; `seen` and `distance2` are scratch.
+    """
+    side = frame[2]
+    nx = int(frame[3])
+    ny = int(frame[4])
+    x = xy[i, 0]
+    y = xy[i, 1]
+    ix = min(max(int(x / side), 0), nx - 1)
+    iy = min(max(int(y / side), 0), ny - 1)
+    first = max(ix - _AROUND, 0)
+    last = min(ix + _AROUND, nx - 1)
+    nearest2 = np.inf
+    n = 0
+    for row in range(max(iy - _AROUND, 0), min(iy + _AROUND, ny - 1) + 1):
+        for j in range(cell_start[row * nx + first], cell_start[row * nx + last + 1]):
+            d2 = (xy[j, 0] - x) ** 2 + (xy[j, 1] - y) ** 2
+            if j == i:
+                continue
+            if n == len(seen):
+                return -1.0
+            seen[n] = d2
+            n += 1
+            if d2 < nearest2:
+                nearest2 = d2
+                nearest[i] = j
+    known = _AROUND * side  # no dot beyond these cells is nearer
+    known2 = known * known
+    if n < _NEIGHBOURS or nearest2 > known2:
+        return -1.0
+    if nearest2 >= enough * enough * _SURELY:
+        return 0.0
+    reach2 = nearest2 / (share * share) / _SURELY
+    within = 0
+    for k in range(n):
+        within += seen[k] <= reach2
+    if within >= _NEIGHBOURS:
+        return 0.0  # the seventh is no farther than the nearest is by `share`
+    distance2[:] = np.inf
+    last = _NEIGHBOURS - 1
+    for k in range(n):
+        d2 = seen[k]
+        if d2 < distance2[last]:
+            at = last
+            while at > 0 and distance2[at - 1] > d2:
+                distance2[at] = distance2[at - 1]
+                at -= 1
+            distance2[at] = d2
+    if distance2[last] > known2:
+        return -1.0
+    wanted = min(share * math.sqrt(distance2[last]), enough)
+    return max(wanted - math.sqrt(nearest2), 0.0)
+
+
 @kernel
 def find_close(
     start: int,
@@ -85,13 +148,17 @@ def find_close(
         0 for a dot that is far enough, or has fewer neighbours than seven.
     """
     distance2 = np.empty(_NEIGHBOURS)
+    seen = np.empty(_LOOKED_AT)
     for i in range(start, stop):
+        lack[i] = 0.0
         if not awake[i]:
-            lack[i] = 0.0
+            continue
+        found = _lack_around(xy, i, cell_start, frame, share, enough[i], nearest, seen, distance2)
+        if found >= 0.0:
+            lack[i] = found
             continue
         j = _look(xy, i, cell_start, frame, distance2, -1)
         nearest[i] = j
-        lack[i] = 0.0
         seventh2 = distance2[_NEIGHBOURS - 1]
         if seventh2 < np.inf:
             wanted = min(share * math.sqrt(seventh2), enough[i])
@@ -106,16 +173,19 @@ def push_apart(
     darkness: Array,
     rim: Array,
     moves: Array,
+    rows: Array,
     awake: Array,
 ) -> int:
     """Move each dot that is too close, and its nearest, half of what lacks; return how many.
 
     A dot nearer to the page's edge than `rim` (n,) only slides along it, and none moves onto
-    white. `moves` (n, 2) is scratch; `awake` gets the dots that moved.
+    white. `moves` (n, 2), all 0 before and after, and `rows` (n,) int32 are scratch; `awake` gets
+    the dots that moved.
     """
     h, w = darkness.shape
     n = 0
-    moves[:] = 0.0
+    n_rows = 0
+    awake[:] = False
     for i in range(len(xy)):
         if lack[i] == 0.0:
             continue
@@ -135,16 +205,25 @@ def push_apart(
         moves[i, 1] += dy
         moves[j, 0] -= dx
         moves[j, 1] -= dy
-    for i in range(len(xy)):
-        awake[i] = moves[i, 0] != 0.0 or moves[i, 1] != 0.0
+        for k in range(2):
+            row = i if k == 0 else j
+            if not awake[row]:
+                awake[row] = True
+                rows[n_rows] = row
+                n_rows += 1
+    for k in range(n_rows):
+        i = rows[k]
+        moved_x, moved_y = moves[i, 0], moves[i, 1]
+        moves[i, 0] = moves[i, 1] = 0.0
+        awake[i] = moved_x != 0.0 or moved_y != 0.0
         if not awake[i]:
             continue
         x = xy[i, 0]
         y = xy[i, 1]
         if rim[i] < x < w - rim[i]:
-            x = min(max(x + moves[i, 0], 1e-9 * w), (1.0 - 1e-9) * w)
+            x = min(max(x + moved_x, 1e-9 * w), (1.0 - 1e-9) * w)
         if rim[i] < y < h - rim[i]:
-            y = min(max(y + moves[i, 1], 1e-9 * h), (1.0 - 1e-9) * h)
+            y = min(max(y + moved_y, 1e-9 * h), (1.0 - 1e-9) * h)
         if darkness[min(max(int(y), 0), h - 1), min(max(int(x), 0), w - 1)] > 0.0:
             xy[i, 0] = x
             xy[i, 1] = y

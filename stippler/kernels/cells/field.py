@@ -4,7 +4,8 @@ The integral of f over a polygon is the line integral of ``G dy`` along its bord
 f's running integral in x. `sums` holds G, and the same of x f, at the pixel borders of each row, so
 an edge costs one term for each pixel it crosses; a long one, where it lies on white, one a row. G
 is taken relative to a column near the polygon: where f is 0 every term is then exactly 0, and so
-is the integral. A window's sums lie in one run, rows of ``columns + 1`` pairs.
+is the integral. A window's sums lie in one run, rows of ``columns + 1`` pairs. Most edges are
+walked many at a time, see `field_lanes`.
 """
 
 from __future__ import annotations

@@ -19,7 +19,6 @@ import math
 from typing import Any
 
 from stippler.kernels.cells.spacing_lanes import (
-    AT_ONCE,
     BASE,
     CAP,
     FAR,
@@ -41,6 +40,7 @@ from stippler.kernels.cells.spacing_lanes import (
     rules_of_sides,
 )
 from stippler.kernels.cells.tables import F8, Dots, Spacing
+from stippler.kernels.machine.eight import AT_ONCE
 from stippler.kernels.machine.jit import ZERO, inline, inner
 from stippler.kernels.machine.simd import get, put
 

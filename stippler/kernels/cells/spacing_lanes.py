@@ -10,8 +10,7 @@ import math
 from typing import Any
 
 from stippler.kernels.machine import simd
-
-AT_ONCE = 8
+from stippler.kernels.machine.eight import AT_ONCE, Eight
 
 NEAR, BASE, SLOPE, CAP, HOLE, NARROW, LEVEL, PULL, GAIN, LOW, LEAST = range(11)
 """Places in `Spacing.rule`."""
@@ -27,61 +26,6 @@ FARTHER = 1.6
 """A neighbour's own spacing counts for no more than so much of a dot's."""
 
 
-class _Numbers:
-    """Eight numbers, with the operators of one."""
-
-    def __init__(self, builder: Any, value: Any) -> None:
-        self.builder, self.value = builder, value
-
-    def _of(self, other: Any) -> Any:
-        if isinstance(other, _Numbers):
-            return other.value
-        return simd.ir.Constant(self.value.type, [float(other)] * AT_ONCE)
-
-    def __add__(self, other: Any) -> _Numbers:
-        return _Numbers(self.builder, simd._add(self.builder, self.value, self._of(other)))
-
-    def __sub__(self, other: Any) -> _Numbers:
-        return _Numbers(self.builder, simd._sub(self.builder, self.value, self._of(other)))
-
-    def __mul__(self, other: Any) -> _Numbers:
-        return _Numbers(self.builder, simd._mul(self.builder, self.value, self._of(other)))
-
-    def __truediv__(self, other: Any) -> _Numbers:
-        return _Numbers(self.builder, self.builder.fdiv(self.value, self._of(other)))
-
-    def inverse(self) -> _Numbers:
-        """Return one over each."""
-        return _Numbers(self.builder, self.builder.fdiv(self._of(1.0), self.value))
-
-    def root(self) -> _Numbers:
-        """Return the square roots."""
-        kind = simd.ir.FunctionType(self.value.type, [self.value.type])
-        name = f"llvm.sqrt.v{AT_ONCE}f64"
-        function = simd.cgutils.get_or_insert_function(self.builder.module, kind, name)
-        return _Numbers(self.builder, self.builder.call(function, [self.value]))
-
-    def at_least(self, other: Any) -> _Numbers:
-        """Return the larger of each two."""
-        return self._chosen(">", self._of(other))
-
-    def at_most(self, other: Any) -> _Numbers:
-        """Return the smaller of each two."""
-        return self._chosen("<", self._of(other))
-
-    def only(self, mask: Any) -> _Numbers:
-        """Return those of a mask, and 0 for others."""
-        return _Numbers(self.builder, self.builder.select(mask, self.value, self._of(0.0)))
-
-    def total(self) -> Any:
-        """Return the sum, added as a tree."""
-        return simd._tree(self.builder, self.value, lambda a, b: simd._add(self.builder, a, b))
-
-    def _chosen(self, than: str, other: Any) -> _Numbers:
-        is_own = self.builder.fcmp_ordered(than, self.value, other)
-        return _Numbers(self.builder, self.builder.select(is_own, self.value, other))
-
-
 class _Sides:
     """Reads what eight sides from the k-th on have to do with."""
 
@@ -89,27 +33,27 @@ class _Sides:
         self.builder, self.k = builder, k
         self.mask = simd._lanes_below(builder, builder.sub(m, k), AT_ONCE)
 
-    def splat(self, value: Any) -> _Numbers:
-        return _Numbers(self.builder, simd._splat(self.builder, value, AT_ONCE))
+    def splat(self, value: Any) -> Eight:
+        return Eight(self.builder, simd._splat(self.builder, value, AT_ONCE))
 
-    def load(self, pointer: Any, beyond: int = 0) -> _Numbers:
+    def load(self, pointer: Any, beyond: int = 0) -> Eight:
         at = self.builder.add(self.k, simd._I8(beyond))
-        return _Numbers(self.builder, simd._load(self.builder, pointer, at, AT_ONCE))
+        return Eight(self.builder, simd._load(self.builder, pointer, at, AT_ONCE))
 
     def numbers(self, pointer: Any, beyond: int) -> Any:
         at = self.builder.add(self.k, simd._I8(beyond))
         return simd._load(self.builder, pointer, at, AT_ONCE)
 
-    def gather(self, pointer: Any, numbers: Any, width: int = 1, column: int = 0) -> _Numbers:
+    def gather(self, pointer: Any, numbers: Any, width: int = 1, column: int = 0) -> Eight:
         builder = self.builder
         if width > 1:
             kind = numbers.type
             numbers = builder.mul(numbers, simd.ir.Constant(kind, [width] * AT_ONCE))
             numbers = builder.add(numbers, simd.ir.Constant(kind, [column] * AT_ONCE))
-        return _Numbers(builder, simd._gather(builder, pointer, numbers, self.mask))
+        return Eight(builder, simd._gather(builder, pointer, numbers, self.mask))
 
 
-def _push(rule: list[_Numbers], d2: _Numbers, mean: _Numbers, radii: _Numbers) -> Any:
+def _push(rule: list[Eight], d2: Eight, mean: Eight, radii: Eight) -> Any:
     """Return one over the distance, and by how much of it dots are pushed apart."""
     apart = d2.root().inverse()
     wanted = (rule[BASE] * mean + rule[SLOPE] * radii).at_least(rule[NEAR] * mean)
@@ -117,7 +61,7 @@ def _push(rule: list[_Numbers], d2: _Numbers, mean: _Numbers, radii: _Numbers) -
     return apart, ((wanted * apart - 1.0) * 0.5).at_least(0.0)
 
 
-def _pull(rule: list[_Numbers], r2: _Numbers, mean: _Numbers, radius: _Numbers) -> _Numbers:
+def _pull(rule: list[Eight], r2: Eight, mean: Eight, radius: Eight) -> Eight:
     """Return how much of the way to a corner pull goes."""
     wide = (radius * 2.0 - mean * WIDE).at_least(0.0).at_most(mean * (WIDEST - WIDE))
     largest = (rule[HOLE] * mean - rule[NARROW] * wide) * (1.0 / math.sqrt(3.0))

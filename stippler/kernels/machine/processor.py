@@ -56,3 +56,14 @@ def level() -> str:
         if all(_LEVELS.get(lower, set()) <= features for lower in asked[k:]):
             return name
     return "none"
+
+
+def reads_lanes() -> bool:
+    """Whether kernels are compiled for processors that read numbers from many places at once.
+
+    Others read them one by one: what is gained by lanes then is lost by that.
+    """
+    name = os.environ.get("NUMBA_CPU_NAME") or level()
+    if name.startswith("x86-64"):
+        return name >= "x86-64-v3"
+    return platform.machine().lower() in ("x86_64", "amd64") and not _about()[1]  # most do

@@ -358,13 +358,19 @@ def load_lanes(typing_context: Any, numbers: Any, table: Any, i: Any) -> Any:
 def _gather(builder: Any, base: Any, index: Any, mask: Any) -> Any:
     """Load ``base[index]`` in the lanes of the mask, 0 in the others."""
     lanes = index.type.count
-    vector = ir.VectorType(_F8, lanes)
-    pointers = ir.VectorType(_F8.as_pointer(), lanes)
     offsets = builder.shl(
         builder.sext(index, ir.VectorType(_I8, lanes)),
         ir.Constant(ir.VectorType(_I8, lanes), [3] * lanes),
     )
     addresses = builder.add(_splat(builder, builder.ptrtoint(base, _I8), lanes), offsets)
+    return _gather_at(builder, addresses, mask)
+
+
+def _gather_at(builder: Any, addresses: Any, mask: Any) -> Any:
+    """Load the doubles at some addresses in the lanes of the mask, 0 in the others."""
+    lanes = addresses.type.count
+    vector = ir.VectorType(_F8, lanes)
+    pointers = ir.VectorType(_F8.as_pointer(), lanes)
     kind = ir.FunctionType(vector, [pointers, _I4, mask.type, vector])
     name = f"llvm.masked.gather.v{lanes}f64.v{lanes}p0"
     function = cgutils.get_or_insert_function(builder.module, kind, name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,17 +85,32 @@ def paths(dots: ShapedDots, n_segments: int, decimals: int) -> bytes:
 
 
 @kernel
-def _write_moves(start, stop, steps, decimals, room, out, used):
-    scale = 10.0**decimals
+def _write_strokes(start, stop, steps, opens, text, text_end, decimals, room, out, used):
     at = start * room
     for i in range(start, stop):
+        if opens[i] >= 0:
+            at = put(out, at, text[text_end[opens[i]] : text_end[opens[i] + 1]])
         out[at] = 109
-        at = put_number(out, at + 1, np.int64(math.floor(steps[i, 0] * scale + 0.5)), decimals)
-        at = _put_step(out, at, np.int64(math.floor(steps[i, 1] * scale + 0.5)), decimals)
+        at = put_number(out, at + 1, steps[i, 0], decimals)
+        at = _put_step(out, at, steps[i, 1], decimals)
         at = put(out, at, _H0)
     used[start] = at - start * room
 
 
-def relative_moves(steps: NDArray[np.float64], decimals: int) -> bytes:
-    """Return a step and a line of no length for each dot of a path."""
-    return written(_write_moves, len(steps), 2 * MAX_NUMBER + 5, steps, decimals)
+def strokes(
+    steps: NDArray[np.int64], opens: NDArray[np.int32], texts: Sequence[bytes], decimals: int
+) -> bytes:
+    """Return a step and a line of no length for each dot of some paths.
+
+    Parameters
+    ----------
+    steps : (n, 2) int64
+        From the dot before, in units of the last decimal.
+    opens : (n,) int32
+        Which of the texts stands before a dot; -1 is none.
+    texts : sequence of bytes
+    """
+    ends = np.cumsum([0, *map(len, texts)])
+    room = 2 * MAX_NUMBER + 5 + max(map(len, texts))
+    text = np.frombuffer(b"".join(texts), np.uint8)
+    return written(_write_strokes, len(steps), room, steps, opens, text, ends, decimals)

@@ -29,7 +29,7 @@ def count_levels(darkness: Array, counts: Array, sums: Array) -> None:
     top = len(counts) - 1
     scale = np.float32(top)
     for i in range(len(darkness)):
-        level = min(max(int(math.ceil(darkness[i] * scale)), 0), top)
+        level = min(max(math.ceil(darkness[i] * scale), 0), top)
         counts[level] += 1.0
         sums[level] += np.float64(darkness[i])
 
@@ -51,5 +51,5 @@ def look_up_levels(
     per = np.float32(scale)
     for y in range(start, stop):
         for x in range(darkness.shape[1]):
-            level = min(max(int(math.ceil(darkness[y, x] * per)), 0), top)
+            level = min(max(math.ceil(darkness[y, x] * per), 0), top)
             out[y, x] = table[level]

@@ -1,0 +1,105 @@
+"""Eight numbers at once, for kernels written as LLVM operations (see `simd`)."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from stippler.kernels.machine import simd
+
+AT_ONCE = 8
+
+
+class Eight:
+    """Eight numbers, with the operators of one."""
+
+    def __init__(self, builder: Any, value: Any) -> None:
+        self.builder, self.value = builder, value
+
+    def _of(self, other: Any) -> Any:
+        if isinstance(other, Eight):
+            return other.value
+        return simd.ir.Constant(self.value.type, [float(other)] * AT_ONCE)
+
+    def __add__(self, other: Any) -> Eight:
+        return Eight(self.builder, simd._add(self.builder, self.value, self._of(other)))
+
+    def __sub__(self, other: Any) -> Eight:
+        return Eight(self.builder, simd._sub(self.builder, self.value, self._of(other)))
+
+    def __mul__(self, other: Any) -> Eight:
+        return Eight(self.builder, simd._mul(self.builder, self.value, self._of(other)))
+
+    def __truediv__(self, other: Any) -> Eight:
+        return Eight(self.builder, self.builder.fdiv(self.value, self._of(other)))
+
+    def inverse(self) -> Eight:
+        """Return one over each."""
+        return Eight(self.builder, self.builder.fdiv(self._of(1.0), self.value))
+
+    def root(self) -> Eight:
+        """Return the square roots."""
+        return self._by("sqrt")
+
+    def floor(self) -> Eight:
+        """Return the largest whole numbers not above."""
+        return self._by("floor")
+
+    def size(self) -> Eight:
+        """Return the numbers without their signs."""
+        return self._by("fabs")
+
+    def at_least(self, other: Any) -> Eight:
+        """Return the larger of each two."""
+        return self._chosen(">", self._of(other))
+
+    def at_most(self, other: Any) -> Eight:
+        """Return the smaller of each two."""
+        return self._chosen("<", self._of(other))
+
+    def above(self, other: Any) -> Any:
+        """Return a mask of those larger than others."""
+        return self.builder.fcmp_ordered(">", self.value, self._of(other))
+
+    def only(self, mask: Any) -> Eight:
+        """Return those of a mask, and 0 for others."""
+        return self.where(mask, 0.0)
+
+    def where(self, mask: Any, other: Any) -> Eight:
+        """Return those of a mask, and others in their place where it is not set."""
+        return Eight(self.builder, self.builder.select(mask, self.value, self._of(other)))
+
+    def largest(self) -> Any:
+        """Return the largest number."""
+        return simd._tree(self.builder, self.value, partial(simd._larger, self.builder))
+
+    def total(self) -> Any:
+        """Return the sum, added as a tree."""
+        return simd._tree(self.builder, self.value, lambda a, b: simd._add(self.builder, a, b))
+
+    def _by(self, name: str) -> Eight:
+        kind = simd.ir.FunctionType(self.value.type, [self.value.type])
+        name = f"llvm.{name}.v{AT_ONCE}f64"
+        function = simd.cgutils.get_or_insert_function(self.builder.module, kind, name)
+        return Eight(self.builder, self.builder.call(function, [self.value]))
+
+    def _chosen(self, than: str, other: Any) -> Eight:
+        is_own = self.builder.fcmp_ordered(than, self.value, other)
+        return Eight(self.builder, self.builder.select(is_own, self.value, other))
+
+
+class Variable:
+    """What a loop changes: eight numbers on the stack, for LLVM to put into a register."""
+
+    def __init__(self, builder: Any, value: Any) -> None:
+        self.builder = builder
+        self._place = simd.cgutils.alloca_once(builder, value.type)
+        self.set(value)
+
+    def get(self) -> Any:
+        """Return the vector."""
+        return self.builder.load(self._place)
+
+    def set(self, value: Any) -> None:
+        """Put another vector in its place."""
+        self.builder.store(value, self._place)
