@@ -51,14 +51,13 @@ def warm(show: Callable[[str, int, int], None], target: Path | None = None) -> N
     objects.mkdir(parents=True, exist_ok=True)
     helper = _second_process(objects) if n_threads() > 1 else None
     try:
-        with export.recording(objects):
+        with export.recording(objects) as kernels:
             _run_parts(show)
-            export.save_list()
     finally:
         if helper is not None:
             helper.kill()
             helper.wait()
-    export.finish(objects, target or store.local_store())
+    export.finish(objects, kernels, target or store.local_store())
 
 
 def warm_levels(show: Callable[[str, int, int], None], *, all_of_them: bool = True) -> None:

@@ -38,13 +38,16 @@ _LOOK_S, _PATIENCE, _STALE_S = 0.01, 6_000, 60.0  # at what another process is m
 _OLD_S = 30 * 86_400.0  # from when on objects of other versions go
 _lock = threading.Lock()
 
+Kernels = dict[str, dict[str, Any]]
+"""Of each kernel by name: a digest of its sources, and its entries' symbols."""
+
 
 @dataclass
 class _Recorder:
     """Objects made so far, and where they are kept."""
 
     folder: Path
-    kernels: dict[str, dict[str, Any]] = field(default_factory=dict)
+    kernels: Kernels = field(default_factory=dict)
     unsupported: set[tuple[str, str]] = field(default_factory=set)
     has_runtime: bool = False
 
@@ -58,8 +61,11 @@ def is_recording() -> bool:
 
 
 @contextmanager
-def recording(folder: Path) -> Iterator[None]:
-    """Compile what is called into objects in a folder, from which they are called, too."""
+def recording(folder: Path) -> Iterator[Kernels]:
+    """Compile what is called into objects in a folder, from which they are called, too.
+
+    What is yielded names the kernels made or used so far, for `finish` to gather.
+    """
     global _recorder
     folder.mkdir(parents=True, exist_ok=True)
     _recorder = _Recorder(folder)
@@ -67,7 +73,7 @@ def recording(folder: Path) -> Iterator[None]:
     if not runtime.exists():
         _write(runtime, _object_of(_parsed(RUNTIME)))
     try:
-        yield
+        yield _recorder.kernels
     finally:
         _recorder = None
 
@@ -118,27 +124,24 @@ def _made_by_another(path: Path) -> bool:
     return False
 
 
-def save_list() -> None:
-    """Write down what this process has made or used, for `finish` to gather."""
-    assert _recorder is not None
-    made = json.dumps(_recorder.kernels)
-    _write(_recorder.folder / f"part-{os.getpid()}.json", made.encode())
+def finish(folder: Path, kernels: Kernels, target: Path) -> None:
+    """Gather the objects of kernels that were made or used while recording into a store.
 
-
-def finish(folder: Path, target: Path) -> None:
-    """Gather the objects of one or more processes into a store.
-
-    Linked into one library where there is a linker; else they are copied as they are.
+    Of several processes that make the same store each writes all of it, one after the other.
     """
-    kernels: dict[str, dict[str, Any]] = {}
-    for part in sorted(folder.glob("part-*.json")):
-        for name, made in json.loads(part.read_text()).items():
-            known = kernels.setdefault(name, {"sources": made["sources"], "entries": []})
-            known["entries"] += [s for s in made["entries"] if s not in known["entries"]]
-        part.unlink()
+    import fcntl  # late: only where there are stores is it known to be there
+
+    target.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        _gather(folder, kernels, target)
+    store.stores.cache_clear()
+
+
+def _gather(folder: Path, kernels: Kernels, target: Path) -> None:
+    """Link objects into one library where there is a linker; else copy them as they are."""
     symbols = [symbol for made in kernels.values() for symbol in made["entries"]]
     objects = [folder / f"{symbol}.o" for symbol in ("runtime", *symbols)]
-    target.mkdir(parents=True, exist_ok=True)
     (target / store.LIST).unlink(missing_ok=True)
     for stale in target.glob("*.o"):
         stale.unlink()
@@ -152,7 +155,6 @@ def finish(folder: Path, target: Path) -> None:
             path.unlink(missing_ok=True)
     about = {"format": store.FORMAT, "sources": all_sources_digest(), "kernels": kernels}
     _write(target / store.LIST, json.dumps(about).encode())
-    store.stores.cache_clear()
 
 
 def _link(objects: list[Path], target: Path) -> bool:
