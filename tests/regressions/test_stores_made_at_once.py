@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from stippler.kernels.machine import export, store
+from stippler.kernels.machine import store
 
 pytestmark = pytest.mark.skipif(not store.can_load(), reason="no store is loaded here")
 
