@@ -7,6 +7,7 @@ processor: another process finds it there, and so does the next version if it ha
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -34,7 +35,6 @@ from stippler.kernels.machine.entry_ir import (
 
 _KNOWN = {*DECLARATIONS, *store.MATH, *store.MEMORY, TABLE, "_GLOBAL_OFFSET_TABLE_"}
 _OURS = ("NRT_MemInfo_alloc_aligned", "NRT_MemInfo_call_dtor")
-_LOOK_S, _PATIENCE, _STALE_S = 0.01, 6_000, 60.0  # at what another process is making
 _OLD_S = 30 * 86_400.0  # from when on objects of other versions go
 _lock = threading.Lock()
 
@@ -92,12 +92,14 @@ def recorded(function: Any, options: dict[str, Any], args: tuple[Any, ...]) -> i
     symbol = f"stippler_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
     path = _recorder.folder / f"{symbol}.o"
     with _lock:
-        if not path.exists() and not _made_by_another(path):
-            try:
-                _write(path, _compiled(function, options, kinds, symbol))
-            except UnsupportedError:
-                _recorder.unsupported.add((name, str(kinds)))
-                return None
+        if not path.exists():
+            with _claimed(path):
+                try:
+                    if not path.exists():
+                        _write(path, _compiled(function, options, kinds, symbol))
+                except UnsupportedError:
+                    _recorder.unsupported.add((name, str(kinds)))
+                    return None
         if not _recorder.has_runtime:
             _recorder.has_runtime = True
             _engine_of(_recorder.folder)
@@ -107,21 +109,15 @@ def recorded(function: Any, options: dict[str, Any], args: tuple[Any, ...]) -> i
         return _engine_of(_recorder.folder)(symbol, path)
 
 
-def _made_by_another(path: Path) -> bool:
-    """Claim an object that is to be made; or wait while another process makes it."""
-    claim = path.with_suffix(".claim")
-    for _ in range(_PATIENCE):
-        try:
-            claim.touch(exist_ok=False)
-        except FileExistsError:
-            if path.exists():
-                return True
-            if time.time() - claim.stat().st_mtime > _STALE_S:
-                return False  # its maker was ended
-            time.sleep(_LOOK_S)
-        else:
-            return False
-    return False
+@contextmanager
+def _claimed(path: Path) -> Iterator[None]:
+    """Claim what is to be made, once no other process that still runs is making it."""
+    import fcntl  # late: only where there are stores is it known to be there
+
+    with path.with_suffix(".claim").open("w") as claim:
+        with contextlib.suppress(OSError):  # a disk without locks: it may be made twice
+            fcntl.flock(claim, fcntl.LOCK_EX)
+        yield
 
 
 def finish(folder: Path, kernels: Kernels, target: Path) -> None:
@@ -129,11 +125,8 @@ def finish(folder: Path, kernels: Kernels, target: Path) -> None:
 
     Of several processes that make the same store each writes all of it, one after the other.
     """
-    import fcntl  # late: only where there are stores is it known to be there
-
     target.mkdir(parents=True, exist_ok=True)
-    with (folder / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with _claimed(folder / "store"):
         _gather(folder, kernels, target)
     store.stores.cache_clear()
 
