@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-import gc
 import sys
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.exceptions import TyperException
 
+from stippler.cli_asked import Asked
 from stippler.cli_check import calibrate, check
-from stippler.cli_options import (
-    Asked,
-    with_export_options,
-    with_only_style_options,
-    with_style_options,
-)
-from stippler.errors import ParameterError, StipplerError, StipplerWarning
+from stippler.cli_ends import ended, say_of, say_what_matters
+from stippler.cli_options import with_export_options, with_only_style_options, with_style_options
+from stippler.cli_render import check_page, input_name, render_file
+from stippler.errors import ParameterError
 from stippler.kernels.machine.numba_import import skip_blas
 from stippler.names import shown
-from stippler.spooled import STDIN, at_hand
+from stippler.spooled import at_hand
 from stippler.stopping import fail, stops
 
 if TYPE_CHECKING:
     from stippler.drawing.drawing import Drawing
-    from stippler.drawing.page import Page
 
 
 _INTERRUPTED = 130
@@ -89,7 +84,7 @@ def edit(
     asked: Asked,
 ) -> None:
     """Open the editor."""
-    _check_page(asked)
+    check_page(asked)
     with at_hand(file or _sample()) as picture:
         if file is not None:
             from stippler.files.read.picture import check_picture
@@ -126,52 +121,7 @@ def render(
     exports: dict[str, Any],
 ) -> None:
     """Turn a picture into a drawing, or a drawing into a file of another kind, without a window."""
-    gc.disable()  # a short process that makes no cycles worth looking for; a tenth of its time
-    from stippler.export import check_output
-
-    check_output(output, [_input(file)], form, **exports)
-    from stippler.opening import is_drawing
-
-    with at_hand(file) as at:
-        if is_drawing(at):
-            _write_again(file, at, output, form, exports, asked)
-            return
-        _check_page(asked)
-        from stippler.export import check_size
-        from stippler.progress import stages_shown
-
-        check_size(output, _page_of(at, asked.width_mm), form, **exports)
-        _warn_of_memory(file, at, asked)
-        with stages_shown() as show:
-            from stippler.api import draw
-
-            show("picture", 0, 1)
-            drawing = draw(at, asked.style, tone=asked.tone, width_mm=asked.width_mm, show=show)
-            show("write", 0, 1)
-            drawing.save(output, form=form, **exports)
-            stops.written = True
-            show("write", 1, 1)
-    for note in drawing.notes:
-        _note(file, note)
-
-
-def _write_again(
-    file: Path, at: Path, output: Path, form: str, exports: dict[str, Any], asked: Asked
-) -> None:
-    """Write a drawing, which can be read `at` a place, to a file of another kind."""
-    if asked.options:
-        name = "standard input" if str(file) == STDIN else shown(file)
-        raise ParameterError(
-            f"is of a picture, and {name} is a drawing already",
-            min(asked.options.values()),
-            "leave it out",
-        )
-    from stippler.api import open as open_drawing
-
-    drawing = open_drawing(at)
-    drawing.inputs = (at,)
-    drawing.save(output, form=form, **exports)
-    stops.written = True
+    render_file(file, output, form, asked, exports)
 
 
 @app.command()
@@ -191,7 +141,7 @@ def process(
     from stippler.api import process as process_areas
     from stippler.export import check_output
 
-    check_output(output, [_input(file)], "")
+    check_output(output, [input_name(file)], "")
     drawing = open_drawing(file)
     areas = _area_ids(drawing, area)
     made = process_areas(drawing, areas, style=asked.base, **asked.keywords)
@@ -199,7 +149,7 @@ def process(
     made.save(output)
     stops.written = True
     for note in made.notes:
-        _note(file, note)
+        say_of(file, note)
 
 
 def _area_ids(drawing: Drawing, told: list[str]) -> list[int]:
@@ -234,7 +184,7 @@ def scale(
 
     before = open_drawing(file)
     for note in patterns_aside(before):
-        _note(file, note)
+        say_of(file, note)
     how = Scaling(by / 100.0, dots, least_radius, seed)
     if area:
         drawing = scaled_areas(before, _area_ids(before, area), how)
@@ -262,7 +212,7 @@ def stats(
     A picture is drawn as render would draw it with the same options, and nothing is written. For a
     .csv, --reference, --width and --tone say what it was drawn from; a .stipple knows.
     """
-    _check_page(asked)
+    check_page(asked)
     from stippler.opening import is_drawing
 
     with at_hand(file) as at, at_hand(reference or file) as seen:
@@ -289,7 +239,7 @@ def stats(
                 at, asked.style, tone=asked.tone, width_mm=asked.width_mm
             )
             for note in notes:
-                _note(file, note)
+                say_of(file, note)
     typer.echo(statistics.as_json(report) if as_json else statistics.as_text(report))
 
 
@@ -327,11 +277,6 @@ def _sample() -> Path:
     return assets() / "samples" / "ammonite.png"
 
 
-def _input(file: Path) -> str | Path:
-    """Return a name under which an input can be told from outputs."""
-    return "/dev/fd/0" if str(file) == STDIN else file
-
-
 def _is_table(file: Path, at: Path) -> bool:
     """Return whether a file is a table of dots, by its name or, piped, by what is in it."""
     if at == file:
@@ -342,63 +287,19 @@ def _is_table(file: Path, at: Path) -> bool:
         return is_table(stream.read(HEAD_BYTES))
 
 
-def _page_of(picture: Path, width_mm: float) -> Page:
-    """Return the page that a picture will have."""
-    from stippler.drawing.page import Page
-    from stippler.files.read.picture import size_of_picture
-
-    columns, rows = size_of_picture(picture)
-    return Page(width_mm, width_mm * rows / columns)
-
-
-def _warn_of_memory(file: Path, picture: Path, asked: Asked) -> None:
-    """Say so before a job that will hardly fit into memory."""
-    from stippler.drawing.style import DEFAULT_DOTS
-    from stippler.files.read.picture import size_of_picture
-    from stippler.jobs.preflight import warning
-
-    columns, rows = size_of_picture(picture)
-    if text := warning("stipple", asked.style.n_dots or DEFAULT_DOTS, columns * rows):
-        _note(file, text)
-
-
-def _note(file: Path, note: str) -> None:
-    """Say what is to be known of a drawing."""
-    fail(f"{shown(file)}: {note}", 0)
-
-
-def _tell(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
-    """Say what is to be known, in a line."""
-    if issubclass(category, StipplerWarning):
-        fail(str(message), 0)
-
-
-def _check_page(asked: Asked) -> None:
-    from stippler.drawing.page import Page
-    from stippler.files.read.picture import check_tone
-
-    check_tone(asked.tone)
-    Page(asked.width_mm, 1.0)
-
-
 def run(args: list[str]) -> int:
     """Carry out a command; return the exit code, having said in one line what went wrong."""
     skip_blas()
-    if not sys.warnoptions:
-        warnings.simplefilter("ignore")  # of libraries, about files; what matters is told by us
-        warnings.simplefilter("always", StipplerWarning)
-        warnings.showwarning = _tell
+    say_what_matters()
     if not args or args[0] not in (*COMMANDS, "--help", "--version", "--install-desktop"):
         args = ["edit", *args]  # `stippler photo.jpg`
+    return ended(lambda: _parsed(args))
+
+
+def _parsed(args: list[str]) -> int:
     try:
         return int(app(args, prog_name="stippler", standalone_mode=False) or 0)
     except TyperException as error:
         return fail(error.format_message(), error.exit_code, f"see stippler {args[0]} --help")
-    except ParameterError as error:
-        return fail(str(error), 2)
-    except StipplerError as error:
-        return fail(str(error), 1)
-    except MemoryError:
-        return fail("not enough memory; ask for fewer dots or a smaller picture", 1)
     except typer.Abort:
         return fail(stops.line(), _INTERRUPTED)

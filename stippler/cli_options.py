@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 import typer
 
+from stippler.cli_asked import Asked, python_name
 from stippler.drawing.parameter import Kind, Parameter
 from stippler.drawing.picture_values import TONE, WIDTH
-from stippler.drawing.style import PARAMETERS, Style
-from stippler.drawing.style_presets import preset, preset_keys
-from stippler.errors import ParameterError
+from stippler.drawing.style import PARAMETERS
+from stippler.drawing.style_presets import preset_keys
 from stippler.files.write.formats import FORMATS, every_option
 
 PANEL = "What is written"
@@ -31,28 +30,6 @@ _TYPES: dict[Kind, type] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """What to make of a picture, as asked for on the command line.
-
-    Attributes
-    ----------
-    options : dict of name to option
-        Those that stand there, by the names of the values they set.
-    base : Style or None
-        The one that is named.
-    keywords : dict
-        The style's values that stand there, as Python takes them.
-    """
-
-    style: Style
-    tone: str
-    width_mm: float
-    options: dict[str, str]
-    base: Style | None
-    keywords: dict[str, Any]
-
-
 def with_style_options(function: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of pictures and styles; it gets them as `asked`."""
     return _with_options(function, (WIDTH, TONE, *PARAMETERS))
@@ -66,20 +43,9 @@ def with_only_style_options(function: Callable[..., None]) -> Callable[..., None
 def _with_options(
     function: Callable[..., None], parameters: tuple[Parameter, ...]
 ) -> Callable[..., None]:
-    added = {_python_name(one): (one.name, one.option) for one in parameters}
-
     def gather(values: dict[str, Any], context: typer.Context) -> Asked:
-        given = {name: pair for name, pair in added.items() if _is_given(context, name)}
-        keywords = {
-            one.word: _value_of(one, values[_python_name(one)])
-            for one in PARAMETERS
-            if _python_name(one) in given
-        }
-        base = preset(values["style"]) if values["style"] else None
-        options = dict.fromkeys((one.name for one in PARAMETERS), "--style") if base else {}
-        page = values.get("tone", TONE.default), values.get("width", WIDTH.default)
-        options |= dict(given.values())
-        return Asked(Style.of(base, **keywords), *page, options, base, keywords)
+        there = {name: value for name, value in values.items() if _is_given(context, name)}
+        return Asked.of(there, parameters)
 
     named = _keyword("style", str, _STYLE, "")
     return _with(function, "asked", [named, *map(_option, parameters)], gather)
@@ -124,10 +90,6 @@ def _is_given(context: typer.Context, name: str) -> bool:
 # --- styles -----------------------------------------------------------------------------------
 
 
-def _python_name(about: Parameter) -> str:
-    return about.flag.lstrip("-").replace("-", "_") if about.flag else about.word
-
-
 def _option(about: Parameter) -> inspect.Parameter:
     metavar = None
     if about.kind is Kind.CHOICE:
@@ -145,7 +107,7 @@ def _option(about: Parameter) -> inspect.Parameter:
         default = False
     info = typer.Option(about.option, help=text, metavar=metavar)
     kind: Any = _TYPES[about.kind]
-    return _keyword(_python_name(about), kind | None if default is None else kind, info, default)
+    return _keyword(python_name(about), kind | None if default is None else kind, info, default)
 
 
 def _keyword(name: str, kind: Any, info: Any, default: Any) -> inspect.Parameter:
@@ -153,21 +115,6 @@ def _keyword(name: str, kind: Any, info: Any, default: Any) -> inspect.Parameter
     return inspect.Parameter(
         name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation
     )
-
-
-def _value_of(about: Parameter, value: Any) -> Any:
-    """Return what an option stands for."""
-    if about.kind is Kind.FLAG:
-        return about.default is not value if about.flag else value
-    if about.kind is Kind.RANGE and value is not None:
-        low, colon, high = value.partition(":")
-        try:
-            return float(low), float(high if colon else low)
-        except ValueError:
-            raise ParameterError(
-                f"{value!r} is no range", about.said_name, "give MIN:MAX in mm, such as 0.15:0.3"
-            ) from None
-    return value
 
 
 # --- formats ----------------------------------------------------------------------------------

@@ -18,8 +18,7 @@ from stippler.errors import (
     StipplerWarning,
     TableError,
 )
-from stippler.files.native.container import is_container
-from stippler.files.native.drawing_file import ENDING, open_drawing
+from stippler.files.native.signature import ENDING, is_container
 
 if TYPE_CHECKING:
     from stippler.drawing.document import Document
@@ -45,6 +44,7 @@ def open_file(path: Path) -> Drawing:
 def _opened(path: Path) -> tuple[Drawing, str]:
     """Open a file of our own; return the drawing, and what was mended in it."""
     from stippler.drawing.mending import with_sound_borders
+    from stippler.files.native.drawing_file import open_drawing
     from stippler.files.read.picture import picture_of_bytes
 
     drawing = keeping(*open_drawing(path, picture_of_bytes))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from collections.abc import Callable
 from typing import NoReturn
 
 from stippler.stopping import Stopped, fail, stops
@@ -19,10 +20,9 @@ def main() -> NoReturn:
     args = sys.argv[1:]
     stops.begin(args[0] if args else "edit")
     try:
-        from stippler import cli
-
+        command = _command(args)
         stops.loaded = True
-        status = cli.run(args)
+        status = command()
         _flush_output()
     except Stopped as stop:
         status = _stopped(stop.number)
@@ -40,6 +40,18 @@ def main() -> NoReturn:
         stops.taken()
         _give_up_output()
     sys.exit(status)
+
+
+def _command(args: list[str]) -> Callable[[], int]:
+    """Return what carries out the arguments, having imported what reads them."""
+    if args[:1] == ["render"]:
+        from stippler.cli_plain import plain
+
+        if (asked := plain(args)) is not None:
+            return asked.run
+    from stippler import cli
+
+    return lambda: cli.run(args)
 
 
 def _stopped(number: int) -> int:

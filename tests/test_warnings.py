@@ -8,7 +8,7 @@ from PIL import Image
 from shapely.geometry import Polygon
 
 import stippler
-from stippler import cli
+from stippler import cli, cli_ends
 from stippler.drawing.area import Area
 from stippler.errors import StipplerWarning
 from stippler.jobs import preflight
@@ -81,7 +81,7 @@ def lines(monkeypatch):
     """What the command line says, of a process that asks for no warnings of Python's."""
     said = []
     monkeypatch.setattr(cli.sys, "warnoptions", [])
-    monkeypatch.setattr(cli, "fail", lambda text, code=0, do="": said.append(text) or code)
+    monkeypatch.setattr(cli_ends, "fail", lambda text, code=0, do="": said.append(text) or code)
     with warnings.catch_warnings():
         yield said
 

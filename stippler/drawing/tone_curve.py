@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
+from stippler.kernels.machine.pool import parallel_for
 
 DEEPEST = 0.82
 """Share of the paper that ink covers at most: relaxed dots just do not merge."""
@@ -63,15 +64,25 @@ class ToneCurve:
         """Return a field of ink, by a table; white stays 0 exactly."""
         table = self.at(np.arange(65536) / 65535.0).astype(np.float32)
         out = np.empty(darkness.shape, np.float32)
-        for band in range(0, len(darkness), 256):  # what lies between fits the cache
-            rows = darkness[band : band + 256]
-            out[band : band + 256] = table[np.rint(rows * np.float32(65535)).astype(np.uint16)]
+
+        def part(start: int, stop: int) -> None:
+            level = np.rint(darkness[start:stop] * np.float32(65535)).astype(np.uint16)
+            out[start:stop] = table[level]
+
+        # what lies between fits the cache
+        parallel_for(part, len(darkness), grain=32, chunks=max(len(darkness) // 64, 1))
         return out
 
 
-def illustration(darkness: NDArray[np.float32]) -> ToneCurve:
-    """Choose the curve for a picture by its perceptual darkness."""
-    share = _counts(darkness.ravel()) / max(darkness.size, 1)
+def illustration(
+    darkness: NDArray[np.float32], counts: NDArray[np.int64] | None = None
+) -> ToneCurve:
+    """Choose the curve for a picture by its perceptual darkness.
+
+    `counts`: how many pixels there are of each value, where these alone are given.
+    """
+    pixels = _counts(darkness.ravel()) if counts is None else _shared_out(darkness, counts)
+    share = pixels / max(int(pixels.sum()), 1)
     levels = (np.arange(_LEVELS) + 0.5) / _LEVELS
     white = _white_of(share, levels)
     inked = np.where(levels > white, share, 0.0)
@@ -89,6 +100,14 @@ def _counts(darkness: NDArray[np.float32]) -> NDArray[np.int64]:
     for first in range(0, len(darkness), _AT_ONCE):  # what lies between fits the cache
         bins = (darkness[first : first + _AT_ONCE] * np.float32(_LEVELS)).astype(np.intp)
         found += np.bincount(np.minimum(bins, _LEVELS - 1, out=bins), minlength=_LEVELS)
+    return found
+
+
+def _shared_out(darkness: NDArray[np.float32], counts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return how many pixels there are of each level, from how many there are of each value."""
+    found = np.zeros(_LEVELS, np.int64)
+    bins = (darkness * np.float32(_LEVELS)).astype(np.intp)
+    np.add.at(found, np.minimum(bins, _LEVELS - 1), counts)
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import shapely
@@ -13,7 +13,9 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from stippler.drawing.validation import floats
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.border_edges import BorderEdges
+
+if TYPE_CHECKING:
+    from stippler.stippling.border_edges import BorderEdges
 
 Shape: TypeAlias = Polygon | MultiPolygon | NDArray[np.float64]
 
@@ -69,6 +71,8 @@ class Compartments:
         GeometryError
             If a shape is empty, invalid or not finite; it names the compartment.
         """
+        from stippler.stippling.border_edges import BorderEdges
+
         polygons: list[Polygon] = []
         shape_of: list[int] = []
         for i, shape in enumerate(_as_list(shapes)):

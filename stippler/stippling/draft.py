@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.run import Holding
 from stippler.drawing.style import Style
-from stippler.stippling.area_bleed import area_ground
 from stippler.stippling.ground import Ground, PageGround
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.progress import DONE, Progress, Step
 from stippler.stippling.task import STIPPLE, Task
 from stippler.stippling.tone import Shortfall
+
+if TYPE_CHECKING:
+    from stippler.drawing.run import Holding
 
 Floats = NDArray[np.float64]
 _NOTHING = np.empty((0, 2)), np.empty(0)
@@ -57,6 +59,8 @@ class Draft:
         assert reference is not None, "only relaxation does without a reference"
         ground: Ground
         if task.parts_mm:
+            from stippler.stippling.area_bleed import area_ground
+
             ground = area_ground(task)
         else:
             ground = PageGround(reference, style, with_bleed=task.kind == STIPPLE)

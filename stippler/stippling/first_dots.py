@@ -8,13 +8,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.stippling.border_rows import behind_rows
 from stippler.stippling.draft import Draft, Floats
-from stippler.stippling.grids import grid, rows_along
 from stippler.stippling.ground import without_dots_at
 from stippler.stippling.halftone import pulse_density as pulses
 from stippler.stippling.halftone import sizes_by_region
-from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
 from stippler.stippling.progress import FIRST, Step
 
 _TRIES = 6  # to meet the number of dots asked for
@@ -50,9 +47,13 @@ def placed(draft: Draft) -> Iterator[tuple[float, Floats]]:
     raster, style = draft.raster, draft.style
     density, angle = density_of(draft), math.radians(style.direction_deg)
     if style.is_grid:
+        from stippler.stippling.grids import grid
+
         yield 1.0, grid(density, style.spacing, angle, draft.n_wanted)
         return
     if style.spacing == "along":
+        from stippler.stippling.grids import rows_along
+
         yield 1.0, rows_along(density, angle, draft.n_wanted, style.seed)
         return
     if style.first_dots == "pulse-density":
@@ -62,6 +63,8 @@ def placed(draft: Draft) -> Iterator[tuple[float, Floats]]:
         for share, first in halftone:
             yield share, first.position_px
         return
+    from stippler.stippling.initial_points import floyd_steinberg, hexagonal, random_dots
+
     if style.first_dots == "random":
         yield 1.0, random_dots(density, style.seed) - raster.bleed
         return
@@ -76,7 +79,11 @@ def density_of(draft: Draft) -> NDArray[np.float32]:
         return density
     there = draft.stand + draft.raster.bleed
     from_rows = draft.style.start == "border" and draft.style.first_dots == "pulse-density"
-    behind = behind_rows(density, there) if from_rows else None
+    behind = None
+    if from_rows:
+        from stippler.stippling.border_rows import behind_rows
+
+        behind = behind_rows(density, there)
     density = without_dots_at(density, there)
     if behind is not None:
         density[behind] = 0.0

@@ -10,7 +10,6 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import MAX_DOTS, WALL, Style
 from stippler.kernels.halftone.scan_order import outside_polygon
@@ -18,7 +17,6 @@ from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.default_number import with_number
 from stippler.stippling.field_sums import Weights
 from stippler.stippling.halftone import DROPPED
-from stippler.stippling.halftone_area import edges_of
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.postprocess import at_edge, even_rim
@@ -28,6 +26,7 @@ from stippler.stippling.tone import DotRule
 from stippler.stippling.window import Window
 
 if TYPE_CHECKING:
+    from stippler.drawing.partition import Outline
     from stippler.stippling.area_bleed import Rim
 
 Floats = NDArray[np.float64]
@@ -230,6 +229,8 @@ class AreaGround:
     def __init__(
         self, reference: Reference, style: Style, outline_mm: Outline, bleed_mm: float = 0.0
     ) -> None:
+        from stippler.stippling.halftone_area import edges_of
+
         box, curves = outline_mm.bounds, curves_of(style)
         style = counted(style, outline_mm.area)
         n_box = _number_in_box(style, outline_mm)

@@ -11,8 +11,6 @@ import shapely
 
 from stippler.kernels.tone.union_share import shares_of_union
 from stippler.stippling.draft import Draft, Floats
-from stippler.stippling.lines import tone_along
-from stippler.stippling.new_on_lines import Place, lined_up, with_new
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
@@ -84,6 +82,9 @@ def onto_lines(draft: Draft, watched: bool) -> Iterator[Step]:
     met, ground, pixel = draft.task.lines, draft.ground, draft.raster.pixel_mm
     if met is None or not len(draft.points):
         return
+    from stippler.stippling.lines import tone_along
+    from stippler.stippling.new_on_lines import Place, lined_up, with_new
+
     n = len(draft.stand)
     local = ground.inside(np.concatenate((draft.stand, draft.points)) * pixel)
     corner = (0.0, 0.0, *draft.raster.size_mm)

@@ -216,7 +216,10 @@ class PageRaster:
         moved = np.empty(len(points), np.uint8)
         reach = max(self.darkness.shape)
         parallel_for(onto_ink, len(points), points, self.darkness, reach, moved)
-        kept: NDArray[np.float64] = points[moved != 2]
+        is_left = moved != 2
+        if is_left.all():
+            return points
+        kept: NDArray[np.float64] = points[is_left]
         return kept
 
     def on_page(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -21,11 +21,13 @@ from stippler.stippling.last_stages import (
     trim,
 )
 from stippler.stippling.progress import RELAXED, Progress, Step
-from stippler.stippling.relax_all import StandingDraft, size_again, space
 from stippler.stippling.run_relaxation import relaxed
 from stippler.stippling.task import RELAX, STIPPLE, Task
 
-Advancing = TypeVar("Advancing", Draft, StandingDraft)
+if TYPE_CHECKING:
+    from stippler.stippling.relax_all import StandingDraft
+
+Advancing = TypeVar("Advancing", Draft, "StandingDraft")
 
 Stage = Callable[[Draft, bool], Iterator[Step]]
 """Advances a draft; yields after each piece of work, with whether anybody looks at that."""
@@ -48,6 +50,8 @@ def run(task: Task, *, snapshots: bool = True) -> Iterator[Progress]:
         The last one has the stage "done".
     """
     if task.kind == RELAX:
+        from stippler.stippling.relax_all import StandingDraft, size_again, space
+
         yield from _through((space, size_again), StandingDraft.of(task), snapshots)
         return
     reference = task.reference

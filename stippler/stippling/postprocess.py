@@ -53,11 +53,12 @@ def part_close(
     enough = _ENOUGH / np.sqrt(np.maximum(density, 1e-12))
     rim = radii if raster.bleed else np.zeros(n)
     up = np.ones(n, bool) if awake is None else awake[order]
-    nearest, lack, moves = np.zeros(n, np.int32), np.empty(n), np.empty((n, 2))
+    nearest, rows = np.zeros(n, np.int32), np.empty(n, np.int32)
+    lack, moves = np.empty(n), np.zeros((n, 2))
     for _ in range(_ROUNDS):
         before = xy.copy() if within else xy
         parallel_for(find_close, n, xy, cell_start, frame, _APART, enough, up, nearest, lack)
-        if not push_apart(xy, nearest, lack, raster.darkness, rim, moves, up):
+        if not push_apart(xy, nearest, lack, raster.darkness, rim, moves, rows, up):
             break
         if within:
             moved = np.flatnonzero((xy != before).any(axis=1))

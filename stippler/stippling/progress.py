@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.run import Holding
 from stippler.stippling.tone import Shortfall
+
+if TYPE_CHECKING:
+    from stippler.drawing.run import Holding
 
 FIRST, RELAXED, TONED, DONE = "first dots", "relax", "tone", "done"
 

@@ -14,7 +14,6 @@ from stippler.stippling.ground import Ground
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.relax import Relaxation
 from stippler.stippling.spacing import LLOYD, TO_INK, Rules, Wanted, rules_after
-from stippler.stippling.transport import evened_out
 
 _LAST_STEPS = 5  # of Lloyd's, weighted by the darkness itself
 _FIRST_STEPS = 2  # Lloyd's, before the rules: they bring dots to the middle of their cells fastest
@@ -78,6 +77,8 @@ def _evenly(
     raster, style = ground.raster, ground.style
     field = ground.ink_field()
     if n_done == 0 and style.first_dots == "random":
+        from stippler.stippling.transport import evened_out
+
         corner = (float(raster.outline_mm()[0, 0]), float(raster.outline_mm()[0, 1]))
         at = evened_out(at, raster.density(), raster.pixel_mm, corner, fixed)
     elif n_done == 0:

@@ -12,7 +12,6 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.style import DEFAULT_DOTS, Style
 from stippler.stippling.draft import Draft
 from stippler.stippling.first_dots import placed
-from stippler.stippling.halftone_area import pulses_inside
 from stippler.stippling.pipeline import run
 from stippler.stippling.progress import Progress, notes_on
 from stippler.stippling.task import Task
@@ -53,6 +52,8 @@ def pulse_density(
     radii : (n,) float64, pixels
         By the rule for radius and density; not solved for the tone.
     """
+    from stippler.stippling.halftone_area import pulses_inside
+
     style = Style(n_dots=dots, iterations=0, seed=seed, growth=growth, start=start, weighted=False)
     reference = Reference(darkness, float(darkness.shape[1]))
     if area is not None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from stippler.drawing.levels import Curve, table_of
-from stippler.drawing.partition import Outline
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.drawing.tone_curve import ToneCurve
 from stippler.kernels.halftone.scan_order import outside_polygon
-from stippler.stippling.halftone_area import edges_of
+
+if TYPE_CHECKING:
+    from stippler.drawing.partition import Outline
 
 
 def curves_of(style: Style) -> tuple[Curve, ...]:
@@ -41,6 +43,8 @@ def toned_by_area(reference: Reference, areas: Mapping[int, tuple[Outline, Style
     changed = {k: pair for k, pair in areas.items() if curves_of(pair[1])}
     if not changed:
         return reference
+    from stippler.stippling.halftone_area import edges_of
+
     darkness = np.array(reference.darkness)
     pixel, (h, w) = reference.pixel_mm, darkness.shape
     for part, style in changed.values():

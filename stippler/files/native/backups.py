@@ -19,7 +19,7 @@ from pathlib import Path
 from platformdirs import user_state_path
 
 from stippler.atomic_write import replacing
-from stippler.files.native.container import is_container
+from stippler.files.native.signature import is_container
 
 _NUMBERED = re.compile(r"(\d{1,9})(-auto)?\.stipple")
 _WHOSE = "whose.txt"

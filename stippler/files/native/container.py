@@ -19,8 +19,8 @@ from typing import BinaryIO
 from stippler.errors import DrawingFileError
 from stippler.files.native import structure
 from stippler.files.native.limits import DEFAULT_LIMITS, Limits
+from stippler.files.native.signature import MIME
 
-MIME = "application/x-stipple"
 VERSION = 1
 """Of the format; a program refuses files of a later one."""
 
@@ -85,16 +85,6 @@ def _shrinks(data: bytes) -> bool:
     middle = max(len(data) // 2 - _SAMPLE // 2, 0)
     sample = data[middle : middle + _SAMPLE]
     return len(zlib.compress(sample, 1)) < _WORTH * len(sample)
-
-
-def is_container(path: Path) -> bool:
-    """Return whether a file begins as a drawing does; False where it cannot be read."""
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(38 + len(MIME))
-    except OSError:
-        return False
-    return head[:4] == b"PK\3\4" and head[38:] == MIME.encode()
 
 
 def read_container(path: str | Path, limits: Limits = DEFAULT_LIMITS) -> dict[str, bytes]:

@@ -30,7 +30,6 @@ from stippler.files.native.page_area import with_page_area
 from stippler.files.native.thumbnail import MEMBER, thumbnail_png
 from stippler.version import VERSION
 
-ENDING = ".stipple"
 PROGRAM = f"stippler {VERSION}"
 STRUCTURE = "document.json"
 

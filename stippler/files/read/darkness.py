@@ -26,6 +26,7 @@ from stippler.files.read.light import (
     srgb_to_light,
 )
 from stippler.files.read.pixels import CHANNELS, Pixels
+from stippler.kernels.machine.pool import parallel_for
 
 MAX_FIELD_PIXELS = 16_000_000
 """Larger pictures are averaged down to this: 0.04 mm a pixel on A4, below any pen's dot."""
@@ -44,6 +45,8 @@ def check_tone(tone: str) -> None:
 
 def darkness_of_pixels(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[str, ...]]:
     """Turn pixels into darkness, upright, averaged to `MAX_FIELD_PIXELS`; and what to tell."""
+    if (few := _few_values(pixels, tone)) is not None:
+        return few
     if tone == "illustration":
         dark, told = darkness_of_pixels(pixels, "perceptual")
         return illustration(dark).apply(dark), told
@@ -63,6 +66,47 @@ def darkness_of_pixels(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], 
             dark = dark.reshape(bottom - top, k, -1, k).mean(axis=(1, 3))
         out[top:bottom] = dark
     return _oriented(out, pixels.orientation), pixels.notes + note
+
+
+def _few_values(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[str, ...]] | None:
+    """Do the same for grey of 8 bits by a table of its values, where that is all of it; else None.
+
+    Each pixel then is looked up once, whatever becomes of its value.
+    """
+    width, height = pixels.size
+    is_grey = pixels.colour == "grey" and pixels.white == 255 and not pixels.alpha
+    if not is_grey or width * height > MAX_FIELD_PIXELS:
+        return None
+    samples = pixels.rows(0, height).reshape(height, width)
+    light = light_of(pixels)
+    if samples.dtype != np.uint8 or len(light.tables) != 1:
+        return None
+    note = (light.note,) if light.note else ()
+    if tone != "linear":
+        light = light.perceptual()
+    each = np.arange(256, dtype=np.uint8)
+    table = _band(each[None, :, None], pixels, light, tone)
+    if tone == "illustration":
+        table = illustration(table[0], _counts(samples)).apply(table)
+    dark = np.empty(samples.shape, np.float32)
+
+    def part(start: int, stop: int) -> None:
+        dark[start:stop] = table[0, samples[start:stop]]
+
+    parallel_for(part, height, grain=32, chunks=16)
+    return _oriented(dark, pixels.orientation), pixels.notes + note
+
+
+def _counts(samples: NDArray[np.uint8]) -> NDArray[np.int64]:
+    """Return how many pixels there are of each value."""
+    found: list[NDArray[np.int64]] = []
+
+    def part(start: int, stop: int) -> None:
+        found.append(np.bincount(samples[start:stop].ravel(), minlength=256))
+
+    parallel_for(part, len(samples), grain=32, chunks=16)
+    total: NDArray[np.int64] = np.sum(found, axis=0)
+    return total
 
 
 def _band(samples: NDArray[Any], pixels: Pixels, light: Light, tone: str) -> NDArray[np.float32]:

@@ -255,8 +255,8 @@ def _decoded_png(data: bytes) -> Pixels:
 @contextmanager
 def _image(stream: BinaryIO, kind: str) -> Iterator[Image.Image]:
     """Open what Pillow or its companion for HEIC reads; the size is checked before decoding."""
-    opened = pillow.open_heic(stream) if kind == "heic" else pillow.open_image(stream)
-    with opened as image:
+    openers = {"heic": pillow.open_heic, "png": pillow.open_png}
+    with openers.get(kind, pillow.open_image)(stream) as image:
         _checked_size(image.size)
         yield image
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import threading
 import warnings
 from typing import Any, BinaryIO
@@ -9,6 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+from PIL.PngImagePlugin import PngImageFile
 
 from stippler.files.read.pixels import Colour, Pixels, of_array, with_alpha
 
@@ -26,6 +28,17 @@ _PLAIN: dict[str, tuple[Colour, bool]] = {
 _CONVERTED = {"1": "L", "La": "LA", "RGBa": "RGBA", "P": "RGBA", "PA": "RGBA"}
 _SRGB_GAMMA = 1 / 2.2
 _NEAR = 0.005
+
+
+def open_png(stream: BinaryIO) -> Image.Image:
+    """Open a PNG as `open_image` does, which first imports what reads other kinds."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return PngImageFile(stream)
+        except (SyntaxError, IndexError, TypeError, KeyError, struct.error):
+            stream.seek(0)
+    return open_image(stream)
 
 
 def open_image(stream: BinaryIO) -> Image.Image:

@@ -13,9 +13,7 @@ from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
 from stippler.files.write.format import Values
 from stippler.files.write.formats import ALL, CLOSED, NONE, PENS, POLARITY
-from stippler.files.write.lettering import text_lines, width_mm, wrapped
 from stippler.files.write.sheet import Layer, Line, Sheet, moved, sheet_of
-from stippler.stippling.tour import tour
 
 LINE_EFFORT = 0.6
 
@@ -125,6 +123,8 @@ def one_line(
     sheet: Sheet, width: float, *, closed: bool, cancel: Callable[[], bool] | None = None
 ) -> Sheet:
     """Return a sheet whose dots are joined, in each layer by one line that never crosses itself."""
+    from stippler.stippling.tour import tour
+
     layers = []
     for layer in sheet.layers:
         points = layer.dots.position_mm
@@ -138,8 +138,12 @@ def one_line(
 
 
 def _letter(letter: str) -> list[Line]:
+    if not letter:
+        return []
+    from stippler.files.write.lettering import text_lines
+
     height = 2 * _TEXT_MM
-    return text_lines(letter, (_GAP_MM, _GAP_MM + height), height) if letter else []
+    return text_lines(letter, (_GAP_MM, _GAP_MM + height), height)
 
 
 def _under(sheet: Sheet, values: Values, reduction: float) -> tuple[list[Line], float]:
@@ -150,6 +154,8 @@ def _under(sheet: Sheet, values: Values, reduction: float) -> tuple[list[Line], 
         lines += bar
         top += used + _GAP_MM
     if caption := " ".join(values["caption"].split()):
+        from stippler.files.write.lettering import text_lines, wrapped
+
         for row in wrapped(caption, _TEXT_MM, sheet.width_mm):
             lines += text_lines(row, (0.0, top + _TEXT_MM), _TEXT_MM)
             top += _ROW * _TEXT_MM
@@ -173,6 +179,8 @@ def length_text(mm: float) -> str:
 
 
 def _scale_bar(sheet: Sheet, magnification: float, top: float) -> tuple[list[Line], float]:
+    from stippler.files.write.lettering import text_lines, width_mm
+
     length = round_length(_BAR_SHARE * sheet.width_mm / magnification)
     drawn = length * magnification
     text = length_text(length)

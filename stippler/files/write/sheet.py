@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing
-from stippler.drawing.line import Line as DrawnLine
 from stippler.drawing.polarity import Polarity, grounds_of, polarity_of
 
 if TYPE_CHECKING:
     from shapely.geometry import MultiPolygon, Polygon
+
+    from stippler.drawing.line import Line as DrawnLine
 
 Points = NDArray[np.float64]
 ROUGH = 1e-3

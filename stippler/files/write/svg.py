@@ -15,7 +15,6 @@ from stippler.errors import ParameterError
 from stippler.files.write.format import Values
 from stippler.files.write.formats import CIRCLES, COMPOUND, MAX_DECIMALS
 from stippler.files.write.names import one_line
-from stippler.files.write.plot_order import sorted_dots
 from stippler.files.write.sheet import (
     ROUGH,
     Layer,
@@ -90,6 +89,8 @@ def chunks(sheet: Sheet, values: Values) -> Iterator[bytes]:
     In a layer the round dots come first, then smooth ellipses, then rough outlines. A path keeps
     within 1 % of the radius of the formula in `kernels/shapes/dot_shape.py`.
     """
+    from stippler.files.write.plot_order import sorted_dots
+
     decimals = values.get("decimals")
     if decimals is None:
         decimals = _decimals_for(smallest_mm(sheet))

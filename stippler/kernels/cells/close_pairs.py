@@ -173,16 +173,19 @@ def push_apart(
     darkness: Array,
     rim: Array,
     moves: Array,
+    rows: Array,
     awake: Array,
 ) -> int:
     """Move each dot that is too close, and its nearest, half of what lacks; return how many.
 
     A dot nearer to the page's edge than `rim` (n,) only slides along it, and none moves onto
-    white. `moves` (n, 2) is scratch; `awake` gets the dots that moved.
+    white. `moves` (n, 2), all 0 before and after, and `rows` (n,) int32 are scratch; `awake` gets
+    the dots that moved.
     """
     h, w = darkness.shape
     n = 0
-    moves[:] = 0.0
+    n_rows = 0
+    awake[:] = False
     for i in range(len(xy)):
         if lack[i] == 0.0:
             continue
@@ -202,16 +205,25 @@ def push_apart(
         moves[i, 1] += dy
         moves[j, 0] -= dx
         moves[j, 1] -= dy
-    for i in range(len(xy)):
-        awake[i] = moves[i, 0] != 0.0 or moves[i, 1] != 0.0
+        for k in range(2):
+            row = i if k == 0 else j
+            if not awake[row]:
+                awake[row] = True
+                rows[n_rows] = row
+                n_rows += 1
+    for k in range(n_rows):
+        i = rows[k]
+        moved_x, moved_y = moves[i, 0], moves[i, 1]
+        moves[i, 0] = moves[i, 1] = 0.0
+        awake[i] = moved_x != 0.0 or moved_y != 0.0
         if not awake[i]:
             continue
         x = xy[i, 0]
         y = xy[i, 1]
         if rim[i] < x < w - rim[i]:
-            x = min(max(x + moves[i, 0], 1e-9 * w), (1.0 - 1e-9) * w)
+            x = min(max(x + moved_x, 1e-9 * w), (1.0 - 1e-9) * w)
         if rim[i] < y < h - rim[i]:
-            y = min(max(y + moves[i, 1], 1e-9 * h), (1.0 - 1e-9) * h)
+            y = min(max(y + moved_y, 1e-9 * h), (1.0 - 1e-9) * h)
         if darkness[min(max(int(y), 0), h - 1), min(max(int(x), 0), w - 1)] > 0.0:
             xy[i, 0] = x
             xy[i, 1] = y

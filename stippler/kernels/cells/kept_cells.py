@@ -41,6 +41,7 @@ from stippler.kernels.machine.simd import (
     corners_of_star,
     moments_of,
     outside_box,
+    pair_mask,
     put,
     reach2_of,
     stack_doubles,
@@ -148,7 +149,9 @@ def _way_to_centroid(
 @inner
 def _has_pair(star: I4, n_star: U1, i: int, a: int, b: int) -> bool:
     """Whether dot i lists a and, right after it, b; an edge in its place says nothing."""
-    m = n_star[i]
+    m = ZERO + n_star[i]
+    if m < LANES:  # behind the last the first is listed once more
+        return bool(pair_mask(star, i, a, b) & ((1 << m) - 1))
     for k in range(m):  # noqa: SIM110 - a kernel
         if star[i, k] == a and star[i, k + 1 if k + 1 < m else 0] == b:
             return True

@@ -355,6 +355,23 @@ def load_lanes(typing_context: Any, numbers: Any, table: Any, i: Any) -> Any:
     return types.void(numbers, table, types.int64), generate
 
 
+@_operation
+def pair_mask(typing_context: Any, table: Any, i: Any, a: Any, b: Any) -> Any:
+    """Return bits for the places in row i of a table `LANES` wide that hold a, the next one b."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = _data(context, builder, signature.args[0], args[0])
+        row = _load(builder, data, builder.mul(args[1], _I8(LANES)), LANES)
+        first, second = (_splat(builder, number, LANES) for number in args[2:])
+        is_pair = builder.and_(
+            builder.icmp_signed("==", row, first),
+            builder.icmp_signed("==", _next_lane(builder, row), second),
+        )
+        return _mask_bits(builder, is_pair, LANES)
+
+    return types.int64(table, types.int64, types.int32, types.int32), generate
+
+
 def _gather(builder: Any, base: Any, index: Any, mask: Any) -> Any:
     """Load ``base[index]`` in the lanes of the mask, 0 in the others."""
     lanes = index.type.count

@@ -183,7 +183,7 @@ class Shelf:
 
 def small_picture(path: Path, side_px: int) -> NDArray[np.uint8] | None:
     """Return a drawing's or a picture's small picture in grey; None where there is none."""
-    from stippler.files.native.container import is_container
+    from stippler.files.native.signature import is_container
     from stippler.files.native.thumbnail import read_thumbnail
     from stippler.files.read.picture import small_grey
 

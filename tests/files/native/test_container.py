@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from stippler.errors import DrawingFileError
 from stippler.files.native import container
-from stippler.files.native.container import MANIFEST, MIME, read_container, write_container
+from stippler.files.native.container import MANIFEST, read_container, write_container
 from stippler.files.native.limits import Limits
+from stippler.files.native.signature import MIME
 
 MEMBERS = {"document.json": b'{"a":1}', "dots/x.f8": bytes(range(256)) * 40, "empty": b""}
 

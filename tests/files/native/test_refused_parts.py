@@ -19,11 +19,12 @@ from stippler.drawing.reference import Picture
 from stippler.drawing.style import MAX_DOTS
 from stippler.errors import DrawingFileError
 from stippler.files.native import arrays, edit_log, journal, recovery, step_file, structure
-from stippler.files.native.container import MANIFEST, MIME, is_container, read_container
+from stippler.files.native.container import MANIFEST, read_container
 from stippler.files.native.drawing_file import drawing_of, members_of
 from stippler.files.native.edit_log import of_entry, replay
 from stippler.files.native.limits import Limits
 from stippler.files.native.recovery import Keeper, is_open_elsewhere, lost_drawings
+from stippler.files.native.signature import MIME, is_container
 from stippler.files.native.thumbnail import MEMBER, SIDE_PX, read_thumbnail
 from stippler.files.read.picture import picture_of_bytes
 from tests.corpus.contents import CONTENTS
