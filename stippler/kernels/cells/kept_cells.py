@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field
+from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field_in_lanes
 from stippler.kernels.cells.kept_borders import move_by_lines
 from stippler.kernels.cells.relaxation import INNER, KEPT
 from stippler.kernels.cells.spacing import ask, blend, rules_of_star
@@ -44,6 +44,7 @@ from stippler.kernels.machine.simd import (
     pair_mask,
     put,
     reach2_of,
+    sides_before,
     stack_doubles,
     stack_ints,
 )
@@ -129,12 +130,13 @@ def _way_to_centroid(
     """
     mass, du, dv = area, mu, mv
     if len(field.sums):
-        outline_of_lanes(U, V, m, out)
-        mass, du, dv = sum_field(out, m, x, y, dots.compartment[i], field)
+        mass, du, dv = sum_field_in_lanes(U, V, m, x, y, dots.compartment[i], field, out)
     if not mass > 0.0:
         return 0.0, 0.0, 0.0
     du, dv = du / mass, dv / mass
-    if len(field.sums):  # next to nothing can have its centroid anywhere, by rounding
+    if len(field.sums) and sides_before(U, V, m, du, dv) != 0:
+        # next to nothing can have its centroid anywhere, by rounding
+        outline_of_lanes(U, V, m, out)
         share = free_share(out, m, du, dv)
         du, dv = share * du, share * dv
     if over != 1.0:
