@@ -373,9 +373,9 @@ class Cells:
         stars = Stars(self._star, self._n_star, np.zeros(self.n, np.uint8))
         done = parallel_for(
             verify_stars, self.n, self._dots, self._table, self.grid.border, self._field,
-            self.over, new, stars, self.rules, todo, grain=GRAIN, cancel=cancel,
+            self.over, new, stars, self.rules, todo, grain=GRAIN, chunks=8, cancel=cancel,
         )  # fmt: skip
-        which = np.flatnonzero(todo).astype(np.int32)
+        which = np.flatnonzero(todo.view(np.bool_)).astype(np.int32)  # quick for truth values alone
         self.n_failed = len(which)
         if self.n_failed > MOST_TODO * self.n:
             return False
@@ -386,7 +386,7 @@ class Cells:
             done = self._relax(which, False, new, stars=stars, cancel=cancel)
             if not done:
                 break
-            rows = np.flatnonzero((stars.suspect != 0) & ~settled).astype(np.int32)
+            rows = np.flatnonzero(stars.suspect.view(np.bool_) > settled).astype(np.int32)
             stars.suspect[:] = 0
             parallel_for(check_stars, len(rows), rows, stars.around, stars.n, todo, grain=1024)
             which = rows[todo[rows] != 0]

@@ -99,10 +99,14 @@ def _few_values(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[s
 
 def _counts(samples: NDArray[np.uint8]) -> NDArray[np.int64]:
     """Return how many pixels there are of each value."""
-    found = np.zeros(256, np.int64)
-    for first in range(0, len(samples), 32):  # what lies between fits the cache
-        found += np.bincount(samples[first : first + 32].ravel(), minlength=256)
-    return found
+    found: list[NDArray[np.int64]] = []
+
+    def part(start: int, stop: int) -> None:
+        found.append(np.bincount(samples[start:stop].ravel(), minlength=256))
+
+    parallel_for(part, len(samples), grain=32, chunks=16)
+    total: NDArray[np.int64] = np.sum(found, axis=0)
+    return total
 
 
 def _band(samples: NDArray[Any], pixels: Pixels, light: Light, tone: str) -> NDArray[np.float32]:
