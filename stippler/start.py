@@ -7,12 +7,17 @@ Whatever happens, at any moment, a person gets one line at most and the right ex
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import sys
 from collections.abc import Callable
 from typing import NoReturn
 
 from stippler.stopping import Stopped, fail, stops
+
+_ONE_BLAS_THREAD = "OPENBLAS_NUM_THREADS", "1"
+"""Numpy's BLAS, of which a render needs next to nothing, starts a thread for each core, which spin
+for 50 ms while there are imports to be done."""
 
 
 def main() -> NoReturn:
@@ -44,13 +49,18 @@ def main() -> NoReturn:
 
 def _command(args: list[str]) -> Callable[[], int]:
     """Return what carries out the arguments, having imported what reads them."""
+    collects = gc.isenabled()
+    gc.disable()  # imports leave little to collect, and a render makes no cycles worth looking for
     if args[:1] == ["render"]:
+        os.environ.setdefault(*_ONE_BLAS_THREAD)
         from stippler.cli_plain import plain
 
         if (asked := plain(args)) is not None:
             return asked.run
     from stippler import cli
 
+    if collects:
+        gc.enable()
     return lambda: cli.run(args)
 
 

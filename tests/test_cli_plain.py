@@ -1,5 +1,6 @@
 """Plain arguments of `render` mean what the parser makes of them, and nothing else is plain."""
 
+import gc
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from stippler import cli, cli_ends, cli_plain, cli_render
+from stippler import cli, cli_ends, cli_plain, cli_render, start
 from stippler.cli_plain import STYLED, plain
 from stippler.drawing.parameter import Kind
 from stippler.files.write.formats import every_option
@@ -126,3 +127,8 @@ def test_a_plain_render_imports_only_what_it_needs(tmp_path):
         "stippler.stippling.area_bleed", "stippler.stippling.new_on_lines",
     }  # fmt: skip
     assert not there & needless
+
+
+def test_other_commands_collect_garbage_as_they_are_run():
+    assert start._command(["--help"]).__name__ == "<lambda>"
+    assert gc.isenabled()

@@ -105,6 +105,7 @@ class Cells:
         self._has_stars = False
         self.n_failed = n  # stars of the step before that did not hold
         self.rules, self._is_measured, self._is_met = LLOYD, True, np.zeros(self.n, np.bool_)
+        self._has_met = False
 
     def space_by(
         self,
@@ -120,6 +121,7 @@ class Cells:
         n = self.n
         self._sort(self._has_stars)
         self._is_met = np.zeros(n, np.bool_) if is_met is None else is_met[self.order]
+        self._has_met = bool(self._is_met.any())
         each = [wanted] if isinstance(wanted, Wanted) else list(wanted)
         tables = [one.table() for one in each]
         rows = np.array([len(table) for table in tables])
@@ -144,7 +146,7 @@ class Cells:
         """Let the next step go by what this one has found."""
         if not self._is_measured:
             self._fit_wants_to_number()
-        if len(self.rules.found):
+        if self._has_met:
             self.rules.found[self._is_met, MASS] = 1.0
         self.rules = self.rules._replace(wants=self.rules.found, found=self.rules.wants)
 

@@ -53,3 +53,69 @@ def test_two_installations_do_not_share_a_mark(house, tmp_path_factory, monkeypa
     monkeypatch.setattr(cache, "_KERNELS", twin)
     cache._text.cache_clear()
     assert cache.all_digest() != before
+
+
+CACHES = ("source_digest", "_kept_digests", "_content_digest", "_imported", "_text")
+
+
+def forget():
+    for name in CACHES:
+        getattr(cache, name).cache_clear()
+
+
+@pytest.fixture
+def fresh(house):
+    forget()
+    yield house
+    forget()
+
+
+def digests(house):
+    forget()
+    return {name: cache.source_digest(str(house / f"{name}.py")) for name in ("top", "other")}
+
+
+def computed(house):
+    return {name: cache._own_digest(house / f"{name}.py") for name in ("top", "other")}
+
+
+def test_digests_are_kept_until_a_file_changes_comes_or_goes(fresh, monkeypatch):
+    before = digests(fresh)
+    assert before == computed(fresh)
+    with monkeypatch.context() as patch:
+        patch.setattr(cache, "_own_digest", lambda _: pytest.fail("is kept"))
+        assert digests(fresh) == before
+    (fresh / "room" / "low.py").write_text("A = 3\n")
+    after = digests(fresh)
+    assert after == computed(fresh)
+    assert after["top"] != before["top"]
+    assert after["other"] == before["other"]
+    (fresh / "other.py").write_text("from stippler.kernels.room import low\nB = 1\n")
+    (fresh / "room" / "new.py").write_text("C = 1\n")
+    with_folder = digests(fresh)
+    assert with_folder == computed(fresh)
+    (fresh / "room" / "new.py").unlink()
+    without = digests(fresh)
+    assert without == computed(fresh)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"stamps": {}}', "null"])
+def test_digests_that_were_cut_are_found_anew(fresh, text):
+    before = digests(fresh)
+    (place,) = (fresh / "cache").glob("digests-*.json")
+    place.write_text(text)
+    assert digests(fresh) == before
+    assert len(place.read_text()) > 100
+
+
+def test_where_nothing_can_be_kept_digests_are_found_each_time(fresh, monkeypatch):
+    before = digests(fresh)
+    (fresh / "file").write_text("")
+    monkeypatch.setenv("STIPPLER_CACHE_DIR", str(fresh / "file"))
+    assert digests(fresh) == before
+
+
+def test_what_lies_elsewhere_has_a_digest_too(fresh, tmp_path_factory):
+    twin = tmp_path_factory.mktemp("twin") / "top.py"
+    twin.write_text((fresh / "top.py").read_text())
+    assert cache.source_digest(str(twin)) == digests(fresh)["top"]

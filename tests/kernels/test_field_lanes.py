@@ -5,16 +5,29 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stippler.kernels.cells.border import sum_field
+from stippler.kernels.cells.border import sum_field, sum_field_in_lanes
 from stippler.kernels.cells.field import integrate_edge
 from stippler.kernels.cells.tables import Field
 from stippler.kernels.machine.jit import kernel
+from stippler.kernels.machine.simd import BUFFER, LANES, put, sides_before, stack_doubles
 from tests.conftest import EXAMPLES
 
 
 @kernel
 def by_lanes(outline, n, x, y, field, found):
     found[0], found[1], found[2] = sum_field(outline, n, x, y, 0, field)
+
+
+@kernel
+def from_lanes(outline, n, x, y, field, found):
+    """Sum a cell whose corners lie in lanes, and tell the sides that (x, y) + (2, 1) is beyond."""
+    U, V = stack_doubles(BUFFER), stack_doubles(BUFFER)
+    for k in range(LANES):
+        put(U, k, outline[k if k < n else k - n, 0])
+        put(V, k, outline[k if k < n else k - n, 1])
+    scratch = np.empty((LANES, 6))
+    found[0], found[1], found[2] = sum_field_in_lanes(U, V, n, x, y, 0, field, scratch)
+    return sides_before(U, V, n, 2.0, 1.0)
 
 
 @kernel
@@ -84,6 +97,14 @@ def test_masses_and_moments_are_those_of_the_pixels(n, seed, reach, whole):
     size = max(reach, 25.0) * np.array([1.0, 25.0, 25.0])
     np.testing.assert_allclose(found / size, single / size, atol=1e-12)
     np.testing.assert_allclose(found / size, exact(corners, values, x, y) / size, atol=1e-11)
+    if n <= 13:
+        beyond = from_lanes(outline, n, x, y, field_of(values), single)
+        np.testing.assert_allclose(found / size, single / size, atol=1e-12)
+        u, v, u1, v1 = outline[:n, :4].T
+        left = (v1 - v) * (u - 2.0) - (u1 - u) * (v - 1.0)
+        clear = np.abs(left) > 1e-9 * reach * reach
+        bits = (beyond >> np.arange(n)) & 1 == 1
+        assert (bits == (left < 0.0))[clear].all()
 
 
 @given(n=st.integers(3, 12), seed=st.integers(0, 9999))

@@ -12,7 +12,7 @@ from typing import Any
 
 from stippler.kernels.cells.clip import outline_piece
 from stippler.kernels.cells.field import COLUMNS, FIRST, ROWS, integrate_edge
-from stippler.kernels.cells.field_lanes import walk_sides
+from stippler.kernels.cells.field_lanes import walk_lanes, walk_sides
 from stippler.kernels.cells.tables import F8, I4, Border, Field, Pads, Spot
 from stippler.kernels.cells.voronoi import cut_cell, reach2_of_cell
 from stippler.kernels.machine.eight import AT_ONCE
@@ -188,6 +188,28 @@ def sum_field(
         return 0.0, 0.0, 0.0
     size = frame[c, 2] * frame[c, 3]
     return total * size, mu * size * frame[c, 2], mv * size * frame[c, 3]
+
+
+@inline
+def sum_field_in_lanes(
+    U: Any, V: Any, m: int, x: float, y: float, c: int, field: Field, out: F8
+) -> tuple[float, float, float]:
+    """Return what `sum_field` does for a cell of m corners in lanes; `out` is scratch."""
+    frame, window = field.frame, field.window
+    if _IN_LANES and m <= AT_ONCE and window[c, ROWS] > 0:
+        ku, kv = 1.0 / frame[c, 2], 1.0 / frame[c, 3]
+        px, py = (x - frame[c, 0]) * ku, (y - frame[c, 1]) * kv
+        mass, mu, mv, gross, left = walk_lanes(
+            U, V, m, ku, kv, field.sums, window[c, FIRST], window[c, ROWS], window[c, COLUMNS],
+            px, py,
+        )  # fmt: skip
+        if left == 0:
+            if mass <= _ROUNDING * gross:
+                return 0.0, 0.0, 0.0
+            size = frame[c, 2] * frame[c, 3]
+            return mass * size, mu * size * frame[c, 2], mv * size * frame[c, 3]
+    outline_of_lanes(U, V, m, out)
+    return sum_field(out, m, x, y, c, field)
 
 
 @inline

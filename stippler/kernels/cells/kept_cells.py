@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field
+from stippler.kernels.cells.border import free_share, outline_of_lanes, sum_field_in_lanes
 from stippler.kernels.cells.kept_borders import move_by_lines
 from stippler.kernels.cells.relaxation import INNER, KEPT
 from stippler.kernels.cells.spacing import ask, blend, rules_of_star
@@ -39,13 +39,12 @@ from stippler.kernels.machine.simd import (
     BUFFER,
     LANES,
     corners_of_star,
-    get,
-    load_lanes,
     moments_of,
     outside_box,
     pair_mask,
     put,
     reach2_of,
+    sides_before,
     stack_doubles,
     stack_ints,
 )
@@ -102,14 +101,14 @@ def verify_stars(
         moves.x[i], moves.y[i], moves.gone[i] = x, y, 0.0
         if dots.fixed[i] and len(spacing.table) == 0:
             continue
-        mass, du, dv = _way_to_centroid(U, V, m, i, x, y, dots, field, over, stars, out)
+        area, mu, mv = moments_of(U, V, m)
+        area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
+        mass, du, dv = _way_to_centroid(
+            U, V, m, i, x, y, area, mu, mv, dots, field, over, stars, out
+        )
         if len(spacing.table):
-            area, mu, mv = moments_of(U, V, m)
-            area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
             ask(spacing, i, c, area, mass)
-            load_lanes(N, stars.around, i)
-            put(N, m, get(N, 0))  # corner k lies between the dots k and k + 1 of a star
-            ru, rv = rules_of_star(U, V, N, A, m, i, dots, spacing)
+            ru, rv = rules_of_star(U, V, stars.around, m, i, dots, spacing)
             if mass > 0.0:
                 du, dv = blend(spacing, i, area, du, dv, mu / area, mv / area, ru, rv)
         if dots.fixed[i]:
@@ -122,28 +121,31 @@ def verify_stars(
 
 @inline
 def _way_to_centroid(
-    U: Any, V: Any, m: int, i: int, x: float, y: float, dots: Dots, field: Field, over: float,
-    stars: Stars, out: F8,
+    U: Any, V: Any, m: int, i: int, x: float, y: float, area: float, mu: float, mv: float,
+    dots: Dots, field: Field, over: float, stars: Stars, out: F8,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Return a cell's mass and the way to its centroid, (over-)relaxed; 0 without mass."""
-    area, du, dv = moments_of(U, V, m)
-    area, du, dv = 0.5 * area, du / 6.0, dv / 6.0
+    """Return a cell's mass and the way to its centroid, (over-)relaxed; 0 without mass.
+
+    `area`, `mu` and `mv` are the cell's own, without a field.
+    """
+    mass, du, dv = area, mu, mv
     if len(field.sums):
-        outline_of_lanes(U, V, m, out)
-        area, du, dv = sum_field(out, m, x, y, dots.compartment[i], field)
-    if not area > 0.0:
+        mass, du, dv = sum_field_in_lanes(U, V, m, x, y, dots.compartment[i], field, out)
+    if not mass > 0.0:
         return 0.0, 0.0, 0.0
-    du, dv = du / area, dv / area
-    if len(field.sums):  # next to nothing can have its centroid anywhere, by rounding
+    du, dv = du / mass, dv / mass
+    if len(field.sums) and sides_before(U, V, m, du, dv) != 0:
+        # next to nothing can have its centroid anywhere, by rounding
+        outline_of_lanes(U, V, m, out)
         share = free_share(out, m, du, dv)
         du, dv = share * du, share * dv
     if over != 1.0:
         for k in range(m):
             a, b = dots.x[stars.around[i, k]] - x, dots.y[stars.around[i, k]] - y
             if over * (a * du + b * dv) > 0.5 * (a * a + b * b):
-                return area, du, dv
-        return area, over * du, over * dv
-    return area, du, dv
+                return mass, du, dv
+        return mass, over * du, over * dv
+    return mass, du, dv
 
 
 @inner

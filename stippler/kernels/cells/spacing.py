@@ -37,12 +37,11 @@ from stippler.kernels.cells.spacing_lanes import (
     SLOPE,
     WIDE,
     WIDEST,
-    rules_of_sides,
+    moves_of_star,
 )
-from stippler.kernels.cells.tables import F8, Dots, Spacing
-from stippler.kernels.machine.eight import AT_ONCE
-from stippler.kernels.machine.jit import ZERO, inline, inner
-from stippler.kernels.machine.simd import get, put
+from stippler.kernels.cells.tables import F8, I4, Dots, Spacing
+from stippler.kernels.machine.jit import inline, inner
+from stippler.kernels.machine.simd import get
 
 FIRST, ROWS, SCALE, UNIT = range(4)
 """Columns of `Spacing.of_part`."""
@@ -143,21 +142,15 @@ def rules_in_lanes(
 
 @inline
 def rules_of_star(
-    U: Any, V: Any, N: Any, A: Any, m: int, i: int, dots: Dots, spacing: Spacing
+    U: Any, V: Any, star: I4, m: int, i: int, dots: Dots, spacing: Spacing
 ) -> tuple[float, float]:
-    """Return what `rules_in_lanes` does for a dot that dots surround on all sides.
-
-    The dot beyond side k is ``N[k + 1]``; A is scratch for two numbers.
-    """
+    """Return what `rules_in_lanes` does for a dot that dots surround on all sides, by its star."""
     mass, h, radius = spacing.wants[i, MASS], spacing.wants[i, NEIGHBOUR], spacing.wants[i, RADIUS]
-    put(A, 0, 0.0)
-    put(A, 1, 0.0)
-    for k in range(0, m, AT_ONCE):
-        rules_of_sides(
-            U, V, N, ZERO + k, ZERO + m, dots.x[i], dots.y[i], mass, h, radius, dots.x, dots.y,
-            spacing.wants, spacing.rule, A,
-        )  # fmt: skip
-    return get(A, 0), get(A, 1)
+    du, dv = moves_of_star(
+        U, V, star, i, m, dots.x[i], dots.y[i], mass, h, radius, dots.x, dots.y, spacing.wants,
+        spacing.rule,
+    )  # fmt: skip
+    return du, dv
 
 
 @inner
@@ -214,13 +207,14 @@ def blend(
     (ink_u, ink_v) is the centroid of the cell's ink, (mid_u, mid_v) that of the cell.
     """
     rule, h = spacing.rule, spacing.wants[i, NEIGHBOUR]
-    s = math.sqrt(min(area, h * h * (1.0 / HEXAGONAL)))
+    s2 = min(area, h * h * (1.0 / HEXAGONAL))
     length2 = du * du + dv * dv
-    if length2 > 0.25 * s * s:
-        shorter = 0.5 * s / math.sqrt(length2)
+    if length2 > 0.25 * s2:
+        shorter = 0.5 * math.sqrt(s2 / length2)
         du *= shorter
         dv *= shorter
     au, av = ink_u - mid_u, ink_v - mid_v
-    off = math.sqrt(au * au + av * av)
-    w = min(max(rule[GAIN] * off / max(s, FAR) - rule[LOW], rule[LEAST]), 1.0)
+    off2 = au * au + av * av
+    off = math.sqrt(off2 / max(s2, FAR * FAR)) if off2 > 0.0 else 0.0
+    w = min(max(rule[GAIN] * off - rule[LOW], rule[LEAST]), 1.0)
     return (1.0 - w) * du + w * ink_u, (1.0 - w) * dv + w * ink_v

@@ -15,12 +15,9 @@ from stippler.kernels.machine.simd import (
     BUFFER,
     LANES,
     corners_of_star,
-    get,
-    load_lanes,
     moments_of,
     put,
     stack_doubles,
-    stack_ints,
 )
 
 
@@ -59,11 +56,10 @@ def move_by_rules(
     todo : (k,) uint8
         Result: set for cells at a border and of very many sides, which stay.
     """
-    U, V, N = stack_doubles(BUFFER), stack_doubles(BUFFER), stack_ints(BUFFER)
+    U, V = stack_doubles(BUFFER), stack_doubles(BUFFER)
     for k in range(BUFFER):
         put(U, k, 0.0)
         put(V, k, 0.0)
-    A = stack_doubles(LANES)
     out = np.empty((LANES, 6))
     for w in range(len(rows)):
         i = ZERO + rows[w]
@@ -82,9 +78,7 @@ def move_by_rules(
         area, mu, mv = 0.5 * area, mu / 6.0, mv / 6.0
         outline_of_lanes(U, V, m, out)
         share = free_share(out, m, cells[i, 1], cells[i, 2])
-        load_lanes(N, stars.around, i)
-        put(N, m, get(N, 0))  # corner k lies between the dots k and k + 1 of a star
-        du, dv = rules_of_star(U, V, N, A, m, i, dots, spacing)
+        du, dv = rules_of_star(U, V, stars.around, m, i, dots, spacing)
         du, dv = blend(
             spacing, i, area, share * cells[i, 1], share * cells[i, 2], mu / area, mv / area, du, dv
         )

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import re
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -51,7 +53,47 @@ def module_folder(source: str) -> Path:
 @cache
 def source_digest(source: str) -> str:
     """Return a digest of what the kernels of one source file are made of, wherever it lies."""
-    return _content_digest(tuple(sorted(_with_imports(Path(source)))))
+    return _kept_digests().get(source) or _own_digest(Path(source))
+
+
+def _own_digest(source: Path) -> str:
+    return _content_digest(tuple(sorted(_with_imports(source))))
+
+
+@cache
+def _kept_digests() -> dict[str, str]:
+    """Return the digests of all kernel files, found once for as long as none of these changes.
+
+    Reading them all takes 10 ms of each process; a changed file has another time or size, and one
+    that came or went shows, too.
+    """
+    stamps = dict(_stamps(_KERNELS))
+    name = hashlib.sha256(str(_KERNELS).encode()).hexdigest()[:12]
+    place = cache_root() / f"digests-{name}.json"
+    try:
+        kept = json.loads(place.read_text(encoding="utf-8"))
+        if kept["stamps"] == stamps:
+            return dict(kept["digests"])
+    except (OSError, ValueError, KeyError, TypeError):
+        pass  # none yet, or one that was cut
+    digests = {path: _own_digest(Path(path)) for path in stamps}
+    part = place.with_suffix(f".{os.getpid()}")
+    with suppress(OSError):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        part.write_text(json.dumps({"stamps": stamps, "digests": digests}), encoding="utf-8")
+        part.replace(place)
+    return digests
+
+
+def _stamps(folder: Path) -> Iterator[tuple[str, list[int]]]:
+    """Yield each source below a folder, with its time and size."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_dir():
+                yield from _stamps(Path(entry.path))
+            elif entry.name.endswith(".py"):
+                found = entry.stat()
+                yield entry.path, [found.st_mtime_ns, found.st_size]
 
 
 def all_sources_digest() -> str:

@@ -498,6 +498,25 @@ def backward_sides(typing_context: Any, A: Any, B: Any, m: Any, U: Any, V: Any) 
 
 
 @_operation
+def sides_before(typing_context: Any, U: Any, V: Any, m: Any, u: Any, v: Any) -> Any:
+    """Return bits for the sides on to the next corner that a place lies beyond."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        u0, v0 = (_load(builder, row, _I8(0), LANES) for row in args[:2])
+        eu = _sub(builder, _next_lane(builder, u0), u0)
+        ev = _sub(builder, _next_lane(builder, v0), v0)
+        du = _sub(builder, u0, _splat(builder, args[3], LANES))
+        dv = _sub(builder, v0, _splat(builder, args[4], LANES))
+        left = _sub(builder, _mul(builder, ev, du), _mul(builder, eu, dv))
+        inside = builder.fcmp_ordered(">=", left, ir.Constant(left.type, [0.0] * LANES))
+        bad = builder.and_(builder.not_(inside), _lanes_below(builder, args[2], LANES))
+        return _mask_bits(builder, bad, LANES)
+
+    real = types.float64
+    return types.int64(U, V, types.int64, real, real), generate
+
+
+@_operation
 def outside_box(typing_context: Any, U: Any, V: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Any:
     """Return bits for the corners outside a box, lanes beyond the cell included."""
 
