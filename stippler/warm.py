@@ -142,6 +142,7 @@ def parts() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "borders of areas", warm_areas.use_borders
     yield "deformations", warm_areas.use_warp
     yield "lines", warm_areas.use_lines
+    yield "one line", _uncross_a_way
     yield "files", lambda: _write(_some_dots(reference))
 
 
@@ -194,10 +195,23 @@ def _relax_a_cluster() -> None:
     Relaxation(0.01 * dots, box(0, 0, 1, 1)).step()
 
 
+def _uncross_a_way() -> None:
+    """Part two steps that cross; ways that are improved have none, as a rule."""
+    import numpy as np
+
+    from stippler.kernels.tour import improve
+
+    uncross: Any = improve.uncross
+    way, ends = np.array([0, 2, 1, 3], np.int32), np.array([[0, 2, 1, 3]])
+    uncross(way, np.argsort(way).astype(np.int32), ends)
+
+
 def _write(drawing: Drawing) -> None:
     """Write round and deformed dots in every way there is."""
     import tempfile
 
+    from stippler.drawing.line import Line
+    from stippler.drawing.planar.path import Path as LinePath
     from stippler.export import save
     from stippler.files.write.formats import CLOSED, COMPOUND, FORMATS
     from stippler.headless import render_image
@@ -210,6 +224,9 @@ def _write(drawing: Drawing) -> None:
             save(drawing, Path(folder) / "strokes.svg", round_dots=COMPOUND)
             save(drawing, Path(folder) / "line.svg", one_line=CLOSED, caption="A")
             save(drawing, Path(folder) / "line.png", one_line=CLOSED, dpi=30)
+            drawing.lines[0] = Line("tapered", LinePath.polyline([(1, 1), (8, 8)]), (0.2, 0.5))
+            save(drawing, Path(folder) / "tapered.png", dpi=30)
+            drawing.lines.clear()
         with contextlib.suppress(DisplayError):  # without OpenGL nothing needs those kernels
             for px_per_mm in (2.0, 8.0):  # seen from afar; near enough to look rough
                 render_image(drawing, px_per_mm=px_per_mm)

@@ -129,3 +129,27 @@ def test_after_warming_areas_and_lines_import_no_numba():
         )
         assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == []
+
+
+EVERY_KERNEL = """
+import importlib, json, pkgutil
+import stippler.kernels
+from stippler.kernels.machine.jit import Kernel
+
+modules = pkgutil.walk_packages(stippler.kernels.__path__, "stippler.kernels.")
+every = [value for one in modules for value in vars(importlib.import_module(one.name)).values()]
+kernels = {value.function.__qualname__: value for value in every if type(value) is Kernel}
+print(json.dumps([len(kernels), sorted(k for k, value in kernels.items() if not value.is_stored)]))
+"""
+
+
+@pytest.mark.skipif(not store.can_load(), reason="no store is loaded here")
+def test_after_warming_every_kernel_is_stored():
+    for command in (["-m", "stippler.warm"], ["-c", EVERY_KERNEL]):
+        done = subprocess.run(
+            [sys.executable, *command], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+    n, left_out = json.loads(done.stdout)
+    assert n > 80
+    assert left_out == []

@@ -16,12 +16,15 @@ from stippler.brushes.tip import Tip
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.ids import IdTable
 from stippler.drawing.partition import Partition
 from stippler.drawing.reference import Reference
 from stippler.kernels.shapes import gpu_dots
 from stippler.kernels.tone.union_share import shares_of_union
 
 _SIDE_MM = 10.0
+_MANY_IDS = np.arange(3000)
+"""More than a table of ids has room for at first."""
 
 
 @cache
@@ -46,6 +49,7 @@ def warm_up_brushes() -> None:
     document.end_run()
     while document.undo():
         pass
+    IdTable().put(_MANY_IDS, _MANY_IDS)
     _upload(document.dots)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from stippler.errors import ParameterError
 from stippler.kernels.cells.relaxation import TOO_MANY_CORNERS, relax_dots
 from stippler.kernels.cells.tables import Dots, Grid, Moves, Spacing, Stars
-from stippler.kernels.dots.bucket_grid import find_in_circle, place_dots
+from stippler.kernels.dots.bucket_grid import place_dots
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.cells import CORNER_CAP, LLOYD, NO_OUTLINES
@@ -69,18 +69,6 @@ class LocalRelaxation:
         out = np.column_stack([self._xs[slots], self._ys[slots]])
         out[slots < 0] = np.nan
         return out
-
-    def find(self, x_mm: float, y_mm: float, radius_mm: float) -> NDArray[np.int32]:
-        """Return the numbers of the dots in a circle, ascending."""
-        found = np.empty(1024, np.int32)
-        while True:
-            n = find_in_circle(
-                float(x_mm), float(y_mm), float(radius_mm), self._room, self._grid.real,
-                self._grid.whole, self._count, self._xs, self._ys, self._dot_of_slot, found,
-            )  # fmt: skip
-            if n <= len(found):
-                return np.sort(found[:n])
-            found = np.empty(n, np.int32)
 
     def relax(self, dots: ArrayLike, steps: int = 1) -> NDArray[np.float64]:
         """Move these dots to the centroids of their cells, all others holding still.

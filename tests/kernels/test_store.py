@@ -42,6 +42,18 @@ def spun(n):
     return x
 
 
+def several(x, n):
+    return n, 0.5 * x, -n, x + n, n + 1
+
+
+def pair_of(x):
+    return x, 2.0 * x
+
+
+def mixed(x):
+    return x, x > 0.0
+
+
 def texts(a):
     return str(a)
 
@@ -132,8 +144,20 @@ def test_the_interpreter_lock_is_released(entry):
     assert len(ticks) > 20
 
 
+def test_several_numbers_come_back_as_a_tuple(entry):
+    call, both = entry(several, 2.5, 7), entry(pair_of, 1.5)
+    before = sys.getrefcount(tuple)
+    for _ in range(1000):
+        assert call(2.5, 7) == (7, 1.25, -7, 9.5, 8)
+        assert both(1.5) == (1.5, 3.0)
+    assert [type(value) for value in call(2.5, 7)] == [int, float, int, float, int]
+    assert call(1e300, -(2**62)) == (-(2**62), 5e299, 2**62, 1e300, 1 - 2**62)
+    assert abs(sys.getrefcount(tuple) - before) < 500
+
+
 def test_what_an_entry_cannot_do_is_left_to_numba(entry):
     assert entry(texts, 1, options={"nogil": True}) is None
+    assert entry(mixed, 1.0) is None
 
 
 def test_what_may_be_called_is_known():

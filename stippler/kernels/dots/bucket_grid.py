@@ -124,39 +124,3 @@ def place_dots(
             slot_of_dot,
         )
     return len(dots)
-
-
-@kernel
-def find_in_circle(
-    x: float,
-    y: float,
-    radius: float,
-    room: int,
-    grid_real: F8,
-    grid_int: I4,
-    count: I4,
-    xs: F8,
-    ys: F8,
-    dot_of_slot: I4,
-    found: I4,
-) -> int:
-    """List the dots of all compartments in a circle; return how many there are."""
-    n = 0
-    for c in range(len(grid_int)):
-        x0, y0, x1, y1 = grid_real[c, 4], grid_real[c, 5], grid_real[c, 6], grid_real[c, 7]
-        if x + radius < x0 or x - radius > x1 or y + radius < y0 or y - radius > y1:
-            continue
-        nx, ny = grid_int[c, 0], grid_int[c, 1]
-        i0 = column_of(x - radius, grid_real[c, 0], grid_real[c, 3], nx)
-        i1 = column_of(x + radius, grid_real[c, 0], grid_real[c, 3], nx)
-        j0 = column_of(y - radius, grid_real[c, 1], grid_real[c, 3], ny)
-        j1 = column_of(y + radius, grid_real[c, 1], grid_real[c, 3], ny)
-        for j in range(j0, j1 + 1):
-            for cell in range(grid_int[c, 2] + j * nx + i0, grid_int[c, 2] + j * nx + i1 + 1):
-                for slot in range(cell * room, cell * room + count[cell]):
-                    dx, dy = xs[slot] - x, ys[slot] - y
-                    if dx * dx + dy * dy <= radius * radius:
-                        if n < len(found):
-                            found[n] = dot_of_slot[slot]
-                        n += 1
-    return n

@@ -37,6 +37,7 @@ _C_CONTIGUOUS, _F_CONTIGUOUS, _ALIGNED, _WRITEABLE = 1, 2, 0x100, 0x400
 _TUPLE_SUBCLASS = 1 << 26
 _TYPE, _DATA, _ND, _SHAPE, _STRIDES, _DTYPE, _FLAGS = 8, 16, 24, 32, 40, 56, 64
 _SIZE, _ITEMS = 16, 24  # of a tuple
+_MEMBER = 8  # bytes that each number of a tuple takes which a kernel returns
 
 DECLARATIONS = {
     "PyLong_AsLongLong": "i64 @PyLong_AsLongLong(ptr)",
@@ -53,6 +54,8 @@ DECLARATIONS = {
     "PyEval_RestoreThread": "void @PyEval_RestoreThread(ptr)",
     "PyErr_Occurred": "ptr @PyErr_Occurred()",
     "PyErr_SetString": "void @PyErr_SetString(ptr, ptr)",
+    "PyTuple_New": "ptr @PyTuple_New(i64)",
+    "PyTuple_SetItem": "i32 @PyTuple_SetItem(ptr, i64, ptr)",
     "Py_IncRef": "void @Py_IncRef(ptr)",
 }
 """What entries call of CPython's stable interface."""
@@ -186,10 +189,14 @@ def entry_ir(symbol: str, native: str, natives: list[str], args: Any, result: An
         f"declare i32 @{native}({', '.join(natives)})",
         *(f"declare {DECLARATIONS[name]}" for name in sorted(entry.used)),
         f"define ptr @{symbol}(ptr %self, ptr %args, i64 %n) {{",
-        "  %result = alloca [16 x i8], align 16",
+        f"  %result = alloca [{max(16, _MEMBER * _n_members(result))} x i8], align 16",
         "  %raised = alloca ptr",
     ]
     return "\n".join([*head, *entry.lines, "}", ""])
+
+
+def _n_members(result: Any) -> int:
+    return len(result) if hasattr(result, "__len__") else 1
 
 
 def _argument(entry: _Entry, value: str, kind: Any) -> None:
@@ -279,24 +286,51 @@ def _box(entry: _Entry, kind: Any) -> None:
     """Make Python's object of the result."""
     types: Any = importlib.import_module("numba.core.types")
 
-    if isinstance(kind, types.NoneType):
+    if isinstance(kind, (types.Tuple, types.UniTuple)):
+        made = _box_tuple(entry, kind)
+    elif isinstance(kind, types.NoneType):
         made = entry.object("none")
         entry.call("Py_IncRef", f"ptr {made}")
     elif isinstance(kind, types.Boolean):
         truth = entry.let(f"zext i8 {entry.load('%result', 0, 'i8')} to i64")
         made = entry.call("PyBool_FromLong", f"i64 {truth}")
-    elif str(kind) == "float64":
-        made = entry.call("PyFloat_FromDouble", f"double {entry.load('%result', 0, 'double')}")
-    elif str(kind) == "uint64":
-        whole = entry.load("%result", 0, "i64")
-        made = entry.call("PyLong_FromUnsignedLongLong", f"i64 {whole}")
-    elif isinstance(kind, types.Integer):
-        whole = entry.load("%result", 0, f"i{kind.bitwidth}")
-        if kind.bitwidth < 64:
-            whole = entry.let(
-                f"{'sext' if kind.signed else 'zext'} i{kind.bitwidth} {whole} to i64"
-            )
-        made = entry.call("PyLong_FromLongLong", f"i64 {whole}")
     else:
-        raise UnsupportedError(str(kind))
+        made = _box_number(entry, kind, 0)
     entry.lines.append(f"  ret ptr {made}")
+
+
+def _box_tuple(entry: _Entry, kind: Any) -> str:
+    """Make a tuple of numbers that fill eight bytes each, one after the other."""
+    if not all(str(member) in ("int64", "uint64", "float64") for member in kind):
+        raise UnsupportedError(str(kind))
+    made = entry.call("PyTuple_New", f"i64 {len(kind)}")
+    _end_unless_made(entry, made)
+    for k, member in enumerate(kind):
+        item = _box_number(entry, member, _MEMBER * k)
+        _end_unless_made(entry, item)
+        entry.call("PyTuple_SetItem", f"ptr {made}, i64 {k}, ptr {item}")
+    return made
+
+
+def _end_unless_made(entry: _Entry, made: str) -> None:
+    """End with the error that Python has set, of too little memory, if there is no object."""
+    is_none = entry.let(f"icmp eq ptr {made}, null")
+    entry.n += 1
+    entry.lines += [f"  br i1 {is_none}, label %wrong, label %b{entry.n}", f"b{entry.n}:"]
+
+
+def _box_number(entry: _Entry, kind: Any, offset: int) -> str:
+    """Make Python's number of one that lies so many bytes into the result."""
+    types: Any = importlib.import_module("numba.core.types")
+
+    if str(kind) == "float64":
+        real = entry.load("%result", offset, "double")
+        return entry.call("PyFloat_FromDouble", f"double {real}")
+    if not isinstance(kind, types.Integer):
+        raise UnsupportedError(str(kind))
+    whole = entry.load("%result", offset, f"i{kind.bitwidth}")
+    if str(kind) == "uint64":
+        return entry.call("PyLong_FromUnsignedLongLong", f"i64 {whole}")
+    if kind.bitwidth < 64:
+        whole = entry.let(f"{'sext' if kind.signed else 'zext'} i{kind.bitwidth} {whole} to i64")
+    return entry.call("PyLong_FromLongLong", f"i64 {whole}")
