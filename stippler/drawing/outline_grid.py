@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
-from stippler.kernels.dots.locate import fill_corners, list_cells, locate
+from stippler.kernels.dots.locate import TINY, fill_corners, list_cells, locate
 from stippler.kernels.machine.pool import parallel_for
 
 _MOST_CELLS = 65_536
@@ -31,7 +31,8 @@ class OutlineGrid:
         parts = [_edges_of(outline) for outline in outlines]
         ends = np.concatenate([[0], np.cumsum([len(part) for part in parts])])
         self._edges = np.ascontiguousarray(np.concatenate(parts))
-        x0, y0, x1, y1 = shapely.total_bounds(np.array(outlines, object))
+        corners = self._edges.reshape(-1, 2)
+        (x0, y0), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
         n_cells = min(max(2 * len(self._edges), 64), _MOST_CELLS)
         side = max(math.sqrt((x1 - x0) * (y1 - y0) / n_cells), max(x1 - x0, y1 - y0) / 4096)
         self._columns, self._rows = int((x1 - x0) / side) + 1, int((y1 - y0) / side) + 1
@@ -79,10 +80,11 @@ class OutlineGrid:
 
 
 def _edges_of(outline: Polygon | MultiPolygon) -> NDArray[np.float64]:
-    """Return the edges of all rings, each with its lower end first."""
+    """Return the edges of all rings, each with its lower end first; tiny numbers become 0."""
     rings = shapely.get_parts(shapely.boundary(outline))
     corners, ring = shapely.get_coordinates(rings, return_index=True)
     edges = np.concatenate([corners[:-1], corners[1:]], axis=1)[ring[1:] == ring[:-1]]
+    edges[np.abs(edges) < TINY] = 0.0
     down = edges[:, 1] > edges[:, 3]
     edges[down] = edges[down][:, [2, 3, 0, 1]]
     return np.asarray(edges)

@@ -23,6 +23,10 @@ I4 = NDArray[np.int32]
 I8 = NDArray[np.int64]
 
 
+TINY = 1e-100
+"""Lengths below this count as 0: products of two of them would, and edges lose their slope."""
+
+
 @inline
 def _is_beyond(x: float, y: float, k: int, edges: F8) -> bool:
     """Whether a point lies right of an edge, or above one that is level.
@@ -50,7 +54,8 @@ def locate(
     """Write the rank of the uppermost outline that holds each point, -1 where none does."""
     x0, y0, side = frame
     for i in range(len(points)):
-        x, y = points[i]
+        x = 0.0 if abs(points[i, 0]) < TINY else points[i, 0]
+        y = 0.0 if abs(points[i, 1]) < TINY else points[i, 1]
         out[i] = -1
         if not (x0 <= x <= x0 + side * columns and y0 <= y <= y0 + side * rows):
             continue
