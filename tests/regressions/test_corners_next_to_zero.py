@@ -1,4 +1,4 @@
-"""An edge from 5e-143 to 4e-286 lost its slope as products came to 0: a dot beside it had no area."""
+"""An edge from 5e-143 to 4e-286 lost its slope as products came to 0; a dot beside it: its area."""
 
 import numpy as np
 import shapely
