@@ -27,11 +27,20 @@ from stippler.kernels.cells.border import (
     sum_area,
     sum_field,
 )
-from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
-from stippler.kernels.cells.grid import seen_distance, spot_of
+from stippler.kernels.cells.cell_trees import (
+    APART,
+    cut_lanes_by_crowd,
+    cut_lanes_by_span,
+)
+from stippler.kernels.cells.grid import ring_span, seen_distance, spot_of
 from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
-from stippler.kernels.cells.row_search import SWEEP_FROM, cut_far_corners, sweep_rows
+from stippler.kernels.cells.row_search import (
+    SWEEP_FROM,
+    cut_by_dots_in_sight,
+    cut_far_corners,
+    sweep_rows,
+)
 from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
 from stippler.kernels.cells.tables import (
     F8,
@@ -69,6 +78,9 @@ from stippler.kernels.machine.simd import (
 
 INNER, RIM, TOO_MANY_CORNERS, KEPT = 0, 1, 2, 3
 """What a cell is: bounded by dots alone; near a border; not computed; near a border, and kept."""
+
+_NEXT = ZERO + 1
+"""Leaves of a crowd that are looked into for the dots next to one."""
 
 
 def relax_dots(
@@ -213,8 +225,12 @@ def _cell_of_dot(
         own = spot.first_cell + spot.iy * spot.nx + spot.ix
         if grid.tree_of_cell[own] >= 0:
             crowd, ring = ZERO + own, ZERO
-    is_packed = True
-    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+    is_packed, is_second = True, crowd >= 0 and grid.node[grid.tree_of_cell[crowd], 1] != 0.0
+    m = OVERFLOW
+    if is_second:
+        m = _cell_with_far_side(U, V, N, dots, grid, spot)
+    if m == OVERFLOW:
+        m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
         n = n_near = ZERO
         reach2, is_swept = 0.0, False
@@ -229,6 +245,12 @@ def _cell_of_dot(
                     m = cut_far_corners(U, V, N, m, dots, grid, spot)
                 if m != OVERFLOW:
                     m = cut_lanes_by_ring(U, V, N, m, dots, grid, spot, ring, crowd)
+            if m == OVERFLOW and len(grid.tree_of_cell) > 0 and not is_second:
+                is_second = True
+                m = _cell_with_far_side(U, V, N, dots, grid, spot)
+                ring = ZERO if crowd >= 0 else ZERO + 1
+                if m != OVERFLOW:
+                    continue
             if m == OVERFLOW:
                 is_packed = False
                 m = start_cell(pads.cell, spot.x0, spot.y0, spot.x1, spot.y1)
@@ -261,6 +283,25 @@ def _cell_of_dot(
             break
         ring += 1
     return m, is_packed, n, reach2, free, n_near
+
+
+@inner
+def _cell_with_far_side(U: Any, V: Any, N: Any, dots: Dots, grid: Grid, spot: Spot) -> int:
+    """Begin a cell with the dots next to its own and those across a void; return its corners."""
+    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+    own = spot.first_cell + spot.iy * spot.nx + spot.ix
+    for s in range(ZERO, 4):
+        row, first, last = ring_span(1, max(s - 1, 0), spot)
+        if s == 0:
+            first = last = spot.ix
+        if first <= last and m != OVERFLOW:
+            m = cut_lanes_by_span(
+                U, V, N, m, dots, grid, spot, row, first, last, APART, math.inf,
+                own if s > 0 else ZERO - 1, _NEXT,
+            )  # fmt: skip
+        if m != OVERFLOW and (s == 0 or s == 3):
+            m = cut_by_dots_in_sight(U, V, N, m, dots, grid, spot)
+    return m
 
 
 @merged

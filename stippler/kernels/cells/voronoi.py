@@ -33,6 +33,12 @@ from stippler.kernels.machine.simd import (
 TOLERANCE = 1e-14
 """A corner that a bisector passes closer than this share of its distance is not cut."""
 
+_MANY_CORNERS = 10
+"""Corners from which on a cell loses no more of them for next to nothing."""
+
+_NOTHING = 2e-18
+"""Twice the area of next to nothing, of the square of a corner's distance."""
+
 OVERFLOW = -1
 """Number of corners of a cell that has more than there is room for."""
 
@@ -110,6 +116,30 @@ def _cut_lanes(
     return int(kept + 2)
 
 
+@inner
+def _corners_worth_a_cut(U: Any, V: Any, m: int, a: float, b: float, c: float, mask: int) -> int:
+    """Return how many corners a cut takes away in one run; none if that is next to nothing.
+
+    Where many dots lie on a circle, cells end in a point at its middle, in which every bisector
+    takes away a corner or not as its dots were rounded.
+    """
+    n_out = n_runs = k = 0
+    was_out = (mask >> (m - 1)) & 1
+    for corner in range(m):
+        is_out = (mask >> corner) & 1
+        if is_out:
+            n_out, k, n_runs = n_out + 1, corner, n_runs + 1 - was_out
+        was_out = is_out
+    if n_out > 1:  # of several runs one alone is cut away, see `_longest_out`
+        return n_out if n_runs == 1 else 1
+    u, v = get(U, k), get(V, k)
+    out = a * u + b * v - c
+    pu, pv = get(U, k + m - 1) - u, get(V, k + m - 1) - v
+    qu, qv = get(U, k + 1) - u, get(V, k + 1) - v
+    area = abs(pu * qv - pv * qu) * (out / (a * pu + b * pv)) * (out / (a * qu + b * qv))
+    return 0 if area <= _NOTHING * (u * u + v * v) else 1
+
+
 @inline
 def cut_lanes_by_run(
     U: Any,
@@ -141,8 +171,12 @@ def cut_lanes_by_run(
             c = 0.5 * (a * a + b * b)
             mask = out_mask(U, V, a, b, c * (1.0 + TOLERANCE)) & ((1 << m) - 1)
             if mask != 0:
-                if m + 2 > LANES:
-                    return OVERFLOW
+                if m >= _MANY_CORNERS:
+                    n_out = _corners_worth_a_cut(U, V, m, a, b, c, mask)
+                    if n_out == 0:
+                        continue
+                    if m - n_out + 3 > LANES:
+                        return OVERFLOW
                 m = _cut_lanes(U, V, N, m, a, b, c, k, mask)
         j += SCAN
     return m
@@ -197,6 +231,8 @@ def unpack_lanes(
 def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> int:
     """Cut away the part with ``a x + b y > c``; return the corners left, `OVERFLOW` if too many.
 
+    Of a cell of many corners next to nothing is not cut away, as in lanes.
+
     The corners beyond the line are consecutive; the first and last crossed sides are shortened
     and the cut becomes a new side.
     """
@@ -225,8 +261,6 @@ def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> i
         n_out += 1
     if n_out == m:
         return m  # only rounding can put the dot itself beyond its own bisector
-    if m - n_out + 2 > cell.shape[1]:
-        return OVERFLOW
     p = first - 1 if first > 0 else m - 1
     q = last + 1 if last + 1 < m else 0
     t = cell[6, p] / (cell[6, p] - cell[6, first])
@@ -235,6 +269,12 @@ def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> i
     t = cell[6, q] / (cell[6, q] - cell[6, last])
     bu = cell[0, q] + t * (cell[0, last] - cell[0, q])
     bv = cell[1, q] + t * (cell[1, last] - cell[1, q])
+    if n_out == 1 and m >= _MANY_CORNERS:
+        u, v = cell[0, first], cell[1, first]
+        if abs((au - u) * (bv - v) - (av - v) * (bu - u)) <= _NOTHING * (u * u + v * v):
+            return m
+    if m - n_out + 2 > cell.shape[1]:
+        return OVERFLOW
     if first <= last and n_out >= 2:  # room for both new corners in place
         cell[0, first], cell[1, first] = au, av
         _set_line(cell, first, a, b, c, number)
