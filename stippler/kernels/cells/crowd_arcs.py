@@ -28,7 +28,8 @@ def lies_on_curve(node: F8, tree: int, depth: int) -> bool:
     for k in range(tree + (1 << depth), tree + (2 << depth)):
         leaves += (node[k, 2] - node[k, 0]) * (node[k, 3] - node[k, 1])
     k = tree + 1
-    return bool(2.0 * leaves <= (node[k, 2] - node[k, 0]) * (node[k, 3] - node[k, 1]))
+    share = min(0.25, 6.0 / (1 << depth))  # on a slanted line it is one by the number of leaves
+    return bool(leaves <= share * (node[k, 2] - node[k, 0]) * (node[k, 3] - node[k, 1]))
 
 
 @inner

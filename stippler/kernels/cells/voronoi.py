@@ -116,30 +116,6 @@ def _cut_lanes(
     return int(kept + 2)
 
 
-@inner
-def _corners_worth_a_cut(U: Any, V: Any, m: int, a: float, b: float, c: float, mask: int) -> int:
-    """Return how many corners a cut takes away in one run; none if that is next to nothing.
-
-    Where many dots lie on a circle, cells end in a point at its middle, in which every bisector
-    takes away a corner or not as its dots were rounded.
-    """
-    n_out = n_runs = k = 0
-    was_out = (mask >> (m - 1)) & 1
-    for corner in range(m):
-        is_out = (mask >> corner) & 1
-        if is_out:
-            n_out, k, n_runs = n_out + 1, corner, n_runs + 1 - was_out
-        was_out = is_out
-    if n_out > 1:  # of several runs one alone is cut away, see `_longest_out`
-        return n_out if n_runs == 1 else 1
-    u, v = get(U, k), get(V, k)
-    out = a * u + b * v - c
-    pu, pv = get(U, k + m - 1) - u, get(V, k + m - 1) - v
-    qu, qv = get(U, k + 1) - u, get(V, k + 1) - v
-    area = abs(pu * qv - pv * qu) * (out / (a * pu + b * pv)) * (out / (a * qu + b * qv))
-    return 0 if area <= _NOTHING * (u * u + v * v) else 1
-
-
 @inline
 def cut_lanes_by_run(
     U: Any,
@@ -171,12 +147,8 @@ def cut_lanes_by_run(
             c = 0.5 * (a * a + b * b)
             mask = out_mask(U, V, a, b, c * (1.0 + TOLERANCE)) & ((1 << m) - 1)
             if mask != 0:
-                if m >= _MANY_CORNERS:
-                    n_out = _corners_worth_a_cut(U, V, m, a, b, c, mask)
-                    if n_out == 0:
-                        continue
-                    if m - n_out + 3 > LANES:
-                        return OVERFLOW
+                if m + 2 > LANES:
+                    return OVERFLOW
                 m = _cut_lanes(U, V, N, m, a, b, c, k, mask)
         j += SCAN
     return m
@@ -231,7 +203,8 @@ def unpack_lanes(
 def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> int:
     """Cut away the part with ``a x + b y > c``; return the corners left, `OVERFLOW` if too many.
 
-    Of a cell of many corners next to nothing is not cut away, as in lanes.
+    Of a cell of many corners next to nothing is not cut away: where many dots lie on a circle,
+    cells end in a point at its middle, in which each bisector takes a corner or not as rounded.
 
     The corners beyond the line are consecutive; the first and last crossed sides are shortened
     and the cut becomes a new side.
@@ -263,10 +236,11 @@ def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> i
         return m  # only rounding can put the dot itself beyond its own bisector
     p = first - 1 if first > 0 else m - 1
     q = last + 1 if last + 1 < m else 0
-    t = cell[6, p] / (cell[6, p] - cell[6, first])
+    before, after = min(cell[6, p], 0.0), min(cell[6, q], 0.0)
+    t = before / (before - cell[6, first])
     au = cell[0, p] + t * (cell[0, first] - cell[0, p])
     av = cell[1, p] + t * (cell[1, first] - cell[1, p])
-    t = cell[6, q] / (cell[6, q] - cell[6, last])
+    t = after / (after - cell[6, last])
     bu = cell[0, q] + t * (cell[0, last] - cell[0, q])
     bv = cell[1, q] + t * (cell[1, last] - cell[1, q])
     if n_out == 1 and m >= _MANY_CORNERS:
