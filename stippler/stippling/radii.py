@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from stippler.kernels.cells.grid import sort_by_grid_cell
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.cell_ink import MAX_CORNERS, build_cells, sum_darkness
+from stippler.kernels.tone.ink_of_areas import ink_in_cells
 from stippler.kernels.tone.radii import (
     compare_sizes,
     even_sizes,
@@ -138,6 +139,14 @@ class Sizes:
             cells.fit(low, high)
         self.radii[self._order] = cells.radii
         yield 1.0
+
+    def ink(self, radii: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return what dots of these sizes lay down within their cells, in square pixels."""
+        cells, n = self._cells, len(radii)
+        laid, found = np.empty(n), np.empty(n)
+        parallel_for(ink_in_cells, n, cells.corners, cells.n_corners, radii[self._order], laid)
+        found[self._order] = laid
+        return found
 
 
 class _Cells:
