@@ -297,6 +297,7 @@ def _known(drawing: Drawing) -> str:
 
 
 def _drawn_as_one(policies: BorderPolicies, areas: tuple[int, ...]) -> tuple[int, ...]:
-    """Return all areas that would be drawn as one with some, which come first."""
+    """Return all areas that would be drawn as one with some but for bleeds; these come first."""
     everyone = [*areas, *(k for k in policies.seeing if k not in areas)]
-    return next(group for group in policies.joined(everyone) if areas[0] in group)
+    groups = policies.joined(everyone, drawn=False)
+    return next(group for group in groups if areas[0] in group)
