@@ -24,7 +24,7 @@ from stippler.stippling.postprocess import at_edge, even_rim
 from stippler.stippling.style_tone import curves_of, toned
 from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import DotRule
-from stippler.stippling.window import Window
+from stippler.stippling.window import Tones, Window
 
 if TYPE_CHECKING:
     from stippler.drawing.partition import Outline
@@ -250,7 +250,7 @@ class AreaGround:
         masked = np.repeat(np.repeat(window.darkness, k, 0), k, 1)
         pixel_mm = window.pixel_mm / k
         outside_polygon(edges_of(self._outline) / pixel_mm, masked)
-        local = Reference(masked, pixel_mm * masked.shape[1])
+        local = Tones(masked, pixel_mm * masked.shape[1])
         page_mm2 = reference.width_mm * reference.height_mm
         self.style = with_number(style, local, page_mm2)
         self.raster = raster_for(local, self.style, bleeds=False)
@@ -342,7 +342,7 @@ class AreaGround:
         return self.rim.evened(self, points, give)
 
 
-def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> PageRaster:
+def raster_for(reference: Reference | Tones, style: Style, *, bleeds: bool = True) -> PageRaster:
     """Prepare the raster that a style lays its dots out on."""
     by_region = style.sizes == "regions"
     raster = PageRaster.of(

@@ -23,7 +23,7 @@ from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
 from stippler.stippling.tone import DotRule, rule_for
-from stippler.stippling.window import Window
+from stippler.stippling.window import Tones, Window
 
 BLEED_SPACINGS = 3.0  # mean spacings
 LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
@@ -65,7 +65,7 @@ class PageRaster:
     @classmethod
     def of(
         cls,
-        reference: Reference,
+        reference: Reference | Tones,
         n_dots: int | None,
         size_range_mm: tuple[float, float] | None,
         bleeds: bool,
@@ -271,7 +271,7 @@ def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.concatenate((darkness[0], darkness[-1], darkness[:, 0], darkness[:, -1]))
 
 
-def _number_for(reference: Reference, size_range_mm: tuple[float, float] | None) -> int:
+def _number_for(reference: Reference | Tones, size_range_mm: tuple[float, float] | None) -> int:
     """Return how many dots of these sizes a reference takes, about."""
     if size_range_mm is None:
         return FEWEST_WITH_BLEED

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.drawing import Drawing
-from stippler.drawing.levels import table_of
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
@@ -104,12 +103,11 @@ def _sampled(
 
 def _seen_as(style: Style, reference: Reference, at_mm: NDArray[np.float64]) -> NDArray[np.float32]:
     """Return how dark a style sees places of the page."""
-    levels = reference.source.levels
+    levels = reference.source.levels.of_pixel
     column, row = np.clip(
         (at_mm / reference.pixel_mm).astype(np.intp).T, 0, np.array(levels.shape[::-1])[:, None] - 1
     )
-    table = table_of(reference.adjustment.apply, *curves_of(style))
-    dark: NDArray[np.float32] = table[levels[row, column]]
+    dark: NDArray[np.float32] = reference.table(*curves_of(style))[levels[row, column]]
     return dark
 
 
@@ -125,9 +123,9 @@ def _ink(
     at = (np.arange(n) + 0.5) / n
     x, y = np.meshgrid(x0 + (x1 - x0) * at, y0 + (y1 - y0) * at)
     owner = partition.area_at(np.column_stack((x.ravel(), y.ravel())))
-    levels = reference.source.darkness
+    levels = reference.source.levels.of_pixel
     rows = np.clip((y / reference.pixel_mm).astype(np.intp), 0, levels.shape[0] - 1)
     columns = np.clip((x / reference.pixel_mm).astype(np.intp), 0, levels.shape[1] - 1)
-    ink = reference.adjustment.apply(np.ascontiguousarray(levels[rows, columns])).ravel()
+    ink = reference.values[levels[rows, columns]].ravel()
     cell = (x1 - x0) * (y1 - y0) / n**2
     return float(ink[np.isin(owner, areas)].sum(dtype=np.float64)) * cell
