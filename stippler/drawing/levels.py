@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -55,24 +55,11 @@ class Levels:
         If it has more, each is rounded to the nearest of 65,536 even steps; only white itself is
         then level 0.
         """
-        from stippler.kernels.tone.darkness_levels import (
-            number_values,  # numba: late, for the first frame's sake
-        )
-
-        flat = np.array(darkness, np.float32, order="C").reshape(-1)
-        if darkness.ndim != 2 or flat.size == 0:
+        field = np.ascontiguousarray(darkness, np.float32)
+        if field.ndim != 2 or field.size == 0:
             raise ParameterError("a reference is a 2-d field with at least one pixel", "reference")
-        _check_range(flat)
-        count, of_pixel = np.zeros(1, np.int64), np.empty(len(flat), np.uint16)
-        bits, slots = np.empty(N_LEVELS, np.uint32), np.full(4 * N_LEVELS, -1, np.int32)
-        number_values(flat.view(np.uint32), slots, bits, count, of_pixel)
-        if count[0] > N_LEVELS:
-            return cls.rounded(flat.reshape(darkness.shape))
-        found = bits[: int(count[0])].view(np.float32)
-        order = np.argsort(found)  # neighbours in tone are neighbours in tables
-        rank = np.empty(len(found), np.uint16)
-        rank[order] = np.arange(len(found))
-        return cls(_looked_up(rank, of_pixel.reshape(darkness.shape)), found[order])
+        _check_range(field)
+        return cls(*gathered([field], field.shape))
 
     @classmethod
     def rounded(cls, darkness: NDArray[np.float32]) -> Levels:
@@ -123,6 +110,42 @@ class Levels:
         return found
 
 
+def gathered(
+    bands: Iterable[NDArray[np.float32]], shape: tuple[int, int]
+) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+    """Return the levels of a field's pixels and their values; see `Levels.of`.
+
+    Parameters
+    ----------
+    bands : iterable of (rows, w) float32
+        The field's rows, some at a time: that it is never held whole.
+    shape : (h, w)
+    """
+    from stippler.kernels.tone.darkness_levels import (
+        number_values,  # numba: late, for the first frame's sake
+    )
+
+    of_pixel, n_done, is_rounded = np.empty(shape, np.uint16), 0, False
+    count, found = np.zeros(1, np.int64), np.empty(N_LEVELS, np.uint32)
+    slots = np.full(4 * N_LEVELS, -1, np.int32)
+    for band in bands:
+        rows = of_pixel[n_done : n_done + len(band)]
+        if not is_rounded:
+            bits = np.ascontiguousarray(band).reshape(-1).view(np.uint32)
+            bits.flags.writeable = False  # kernels compile for one kind
+            number_values(bits, slots, found, count, rows.reshape(-1))
+            is_rounded = bool(count[0] > N_LEVELS)
+            if is_rounded:
+                nearest = _nearest_levels(found.view(np.float32))
+                of_pixel[:n_done] = _looked_up(nearest, of_pixel[:n_done])
+        if is_rounded:
+            rows[...] = _nearest_levels(band)
+        n_done += len(band)
+    if is_rounded:
+        return of_pixel, table_of()
+    return of_pixel, np.array(found[: int(count[0])].view(np.float32))
+
+
 def table_of(*curves: Curve) -> NDArray[np.float32]:
     """Return what curves, one after the other, make of 65,536 even steps of darkness.
 
@@ -142,11 +165,12 @@ def _nearest_levels(darkness: NDArray[np.float32]) -> NDArray[np.uint16]:
 
     def part(start: int, stop: int) -> None:
         band = flat[start:stop] * _DARKEST
-        tiny = (band > 0.0) & (band < 0.5)
         band += np.float32(0.5)
-        found = band.astype(np.uint16)
-        found[tiny] = 1
-        out[start:stop] = found
+        found = out[start:stop]
+        found[...] = band
+        first = found == 0
+        if first.any():
+            found[first & (flat[start:stop] > 0.0)] = 1
 
     parallel_for(part, len(flat), grain=_BAND_PX, chunks=max(len(flat) // _BAND_PX, 1))
     return levels

@@ -9,12 +9,13 @@ as an illustrator would draw it (*illustration*, see `stippler.drawing.tone_curv
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.levels import N_LEVELS, Levels, table_of
+from stippler.drawing.levels import N_LEVELS, Levels, gathered, table_of
 from stippler.drawing.picture_values import TONES
 from stippler.drawing.tone_curve import curve_for, illustration, tones_in
 from stippler.errors import ParameterError, PictureError
@@ -53,28 +54,41 @@ def levels_of_pixels(pixels: Pixels, tone: str) -> tuple[Levels, tuple[str, ...]
         tone = "perceptual"
     width, height = pixels.size
     k = min(max(math.ceil(math.sqrt(width * height / MAX_FIELD_PIXELS)), 1), width, height)
-    out: NDArray[Any] = np.empty((height // k, width // k), np.uint16 if drawn else np.float32)
-    tones: list[NDArray[np.int64]] = []
+    shape = height // k, width // k
     light = light_of(pixels)
-    note = (light.note,) if light.note else ()
+    told = pixels.notes + ((light.note,) if light.note else ())
     if tone == "perceptual" and len(light.tables) == 1:
         light = light.perceptual()
-    rows = max(_BAND_PIXELS // (width * k), 1)
-    for top in range(0, len(out), rows):
-        bottom = min(top + rows, len(out))
-        band = pixels.rows(top * k, bottom * k)[:, : out.shape[1] * k]
+    bands = _bands(pixels, light, tone, k)
+    of_pixel, values = _drawn(bands, shape) if drawn else gathered(bands, shape)
+    return Levels(_oriented(of_pixel, pixels.orientation), values), told
+
+
+def _bands(pixels: Pixels, light: Light, tone: str, k: int) -> Iterator[NDArray[np.float32]]:
+    """Give the darkness of pixels, or the means of blocks of k x k, some rows at a time."""
+    width, height = pixels.size
+    rows, columns = height // k, width // k
+    at_once = max(_BAND_PIXELS // (width * k), 1)
+    for top in range(0, rows, at_once):
+        bottom = min(top + at_once, rows)
+        band = pixels.rows(top * k, bottom * k)[:, : columns * k]
         dark = _band(band.reshape(*band.shape[:2], -1), pixels, light, tone)
-        if k > 1:
-            dark = dark.reshape(bottom - top, k, -1, k).mean(axis=(1, 3))
-        if drawn:  # a curve of as many steps: what it makes of them waits for all the tones
-            tones.append(tones_in(dark.ravel()))
-            dark = np.rint(dark * np.float32(N_LEVELS - 1))
-        out[top:bottom] = dark
-    out = _oriented(out, pixels.orientation)
-    told = pixels.notes + note
-    if not drawn:
-        return Levels.of(out), told
-    return Levels(out, curve_for(np.sum(tones, axis=0)).apply(table_of())), told
+        yield dark if k == 1 else dark.reshape(bottom - top, k, -1, k).mean(axis=(1, 3))
+
+
+def _drawn(
+    bands: Iterable[NDArray[np.float32]], shape: tuple[int, int]
+) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+    """Return levels and their values as an illustrator draws them.
+
+    The curve has as many steps as there are levels, so that its table waits for all the tones.
+    """
+    of_pixel, n_done, tones = np.empty(shape, np.uint16), 0, []
+    for band in bands:
+        tones.append(tones_in(band.ravel()))
+        of_pixel[n_done : n_done + len(band)] = np.rint(band * np.float32(N_LEVELS - 1))
+        n_done += len(band)
+    return of_pixel, curve_for(np.sum(tones, axis=0)).apply(table_of())
 
 
 def _grey_values(pixels: Pixels, tone: str) -> tuple[Levels, tuple[str, ...]] | None:

@@ -45,14 +45,14 @@ def number_values(bits: Array, slots: Array, found: Array, count: Array, out: Ar
     slots : (2**18,) int32
         All -1; where values are looked for.
     found : (k,) uint32
-        Is given the values.
+        Is given the values; those that are there already stay.
     count : (1,) int64
-        Is given their number; k + 1 where there are more, and the rest is left.
+        Their number, before and after; k + 1 where there are more, and the rest is left.
     out : (m,) uint16
         Is given the number of each value.
     """
     last = np.uint32(len(slots) - 1)
-    n = 0
+    n = count[0]
     for i in range(len(bits)):
         value = bits[i]
         at = np.uint32(np.uint32(value * np.uint32(2654435769)) >> np.uint32(14))
