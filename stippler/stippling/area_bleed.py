@@ -166,9 +166,9 @@ class Rim:
         self._lines = NearLines(self.borders.bleeding, _CELLS * self._spacing)
         near = self._lines.nearest(points * side + np.array(ground.origin_mm))
         band = np.flatnonzero(np.isfinite(near.away))
-        n_in_box = round(raster.darkness.size * side**2 / self._spacing**2)
-        *_, (_, radii) = solve_radii(points[band], raster.darkness, raster.rule, n_in_box)
-        self._radius_mm = radii * side
+        others = ground.sized_among
+        cells = ground.cells(np.concatenate((others, points)), len(others) + band)
+        self._radius_mm = solve_radii(cells, raster.rule) * side
         return band
 
     def evened(self, ground: AreaGround, points: Floats, give: float) -> Evened:

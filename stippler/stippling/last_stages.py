@@ -106,15 +106,10 @@ def radii(draft: Draft, watched: bool) -> Iterator[Step]:
         there = np.concatenate((draft.ground.sized_among, there))
     n = len(there)
     points = np.concatenate((there, draft.points)) if n else draft.points
-    cells = draft.ground.cells(points) if len(points) else None
-    raster = draft.raster
-    sizes = Sizes(points, raster.darkness, raster.rule, tessellation=cells)
-    if len(points):
-        for share in sizes.prepare():
-            yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
-        for share in sizes.solve():
-            yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
-    if is_long and len(points) and raster.rule.varies:
+    sizes = Sizes(draft.ground.cells(points), draft.raster.rule)
+    for share in sizes.solve():
+        yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
+    if is_long and len(points) and draft.raster.rule.varies:
         _for_long_dots(draft, points, sizes)
     draft.radii = sizes.radii[n:]
 

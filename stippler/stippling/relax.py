@@ -236,9 +236,14 @@ class Relaxation:
         """Return the (weighted) centroid of each dot's clipped cell, mm, in the order given."""
         return self.points + self._cells.measure(weighted=True)[:, 1:3]
 
-    def tessellation(self, weighted: bool = True) -> Tessellation:
-        """Return all cells, clipped, in the order given; masses by the density if `weighted`."""
-        return Tessellation.of_cells(self._cells, weighted)
+    def tessellation(
+        self, weighted: bool = True, which: NDArray[np.integer] | None = None
+    ) -> Tessellation:
+        """Return all cells, clipped, in the order given; masses by the density if `weighted`.
+
+        Or those of the dots `which`, (k,) int, alone.
+        """
+        return Tessellation.of_cells(self._cells, weighted, which)
 
     def energy(self) -> float:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""

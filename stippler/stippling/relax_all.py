@@ -331,13 +331,13 @@ class _Sheet:
     def _solved(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
         pixel = self.raster.pixel_mm
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / pixel
-        cells = None
-        if self._within is not None:
+        if self._within is None:
+            cells = self.raster.cells(inside)
+        else:
             parts, of_dot = self._within
             field = DensityField(self.raster.darkness, 1.0)
             cells = Tessellation.of(inside, parts, of_dot, field)
-        *_, (_, radii) = solve_radii(inside, self.raster.darkness, self.rule, tessellation=cells)
-        return radii * pixel
+        return solve_radii(cells, self.rule) * pixel
 
     def _size_by_darkness(
         self, position_mm: NDArray[np.float64], sizes: NDArray[np.float64]
