@@ -22,6 +22,7 @@ from stippler.stippling.page_raster import (
 )
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.task import STIPPLE, Task
+from stippler.stippling.tessellation import made
 from stippler.stippling.tone import DotRule, rule_for
 
 _STRIP = 2.0  # mean spacings that dots are laid out beyond a line; wider made no rim more even
@@ -168,7 +169,7 @@ class Rim:
         band = np.flatnonzero(np.isfinite(near.away))
         others = ground.sized_among
         cells = ground.cells(np.concatenate((others, points)), len(others) + band)
-        self._radius_mm = solve_radii(cells, raster.rule) * side
+        self._radius_mm = solve_radii(made(cells), raster.rule) * side
         return band
 
     def evened(self, ground: AreaGround, points: Floats, give: float) -> Evened:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -50,8 +50,8 @@ GATHERED = 32
 FEW = 256
 """Smallest share of a thread where cells are computed one by one, and of a list of them."""
 
-PARTS = 32
-"""Most ranges in which outlines are made."""
+PART, AT_ONCE = 2048, 8
+"""Dots that a thread outlines the cells of, and how many such parts are made before a pause."""
 
 KEEP_BELOW = 0.25
 """Mean move, in spacings, below which stars are worth keeping."""
@@ -252,11 +252,14 @@ class Cells:
         out[self.order] = cells
         return out
 
-    def outline(self, weighted: bool, which: Rows | None = None) -> tuple[Outlines, Rows, Floats]:
-        """Return the outlines of all cells, in the order given, or of the dots `which` alone.
+    def outline(
+        self, weighted: bool, which: Rows | None = None
+    ) -> Generator[float, None, tuple[Outlines, Rows, Floats]]:
+        """Find the outlines of all cells, in the order given, or of the dots `which` alone.
 
-        With the row of each one's dot and, (6, n), what `measure` returns. The dots beyond sides
-        have the numbers they were given in, or are the places in `which` and `ELSEWHERE`.
+        Yields the share done. Returns them with the row of each one's dot and, (6, n), what
+        `measure` returns. The dots beyond sides have the numbers they were given in, or are the
+        places in `which` and `ELSEWHERE`.
         """
         self._sort(self._has_stars)
         number, row_of_dot = self.order, np.empty(self.n, np.int32)
@@ -266,51 +269,53 @@ class Cells:
         if which is not None:
             number = np.full(self.n, ELSEWHERE, np.int32)
             number[rows] = np.arange(n, dtype=np.int32)
-        n_parts = min(max(n // FEW, 1), PARTS)
+        n_parts = max(n // PART, min(n // FEW, AT_ONCE), 1)
         ends = np.arange(n_parts + 1) * n // n_parts
         room, used = 8 * np.diff(ends) + 64, np.zeros(n_parts, np.int64)
         n_sides, cells, measured = np.zeros(n, np.int32), np.zeros((self.n, 6)), np.empty((6, n))
         new = self._scratch_moves()
         dots = self._dots._replace(fixed=np.empty(0, np.bool_))
 
-        def outline_parts(start: int, stop: int) -> None:
-            for k in range(start, stop):
-                which, cap = slice(ends[k], ends[k + 1]), CORNER_CAP
-                mine = Outlines(
-                    *(array[last[k] - room[k] : last[k]] for array in out), n_sides, used[k : k + 1]
+        def outline_part(k: int) -> None:
+            mine, place = slice(ends[k], ends[k + 1]), slice(last[k] - room[k], last[k])
+            out = Outlines(corner[place], beyond[place], following[place], n_sides, used[k : k + 1])
+            cap = CORNER_CAP
+            while True:
+                used[k] = 0
+                relax_dots(
+                    mine.start, mine.stop, cap, rows, False, dots, self._table, self.grid.border,
+                    self._field_for(weighted), self.over, new, cells, _NO_STARS, out, LLOYD,
                 )  # fmt: skip
-                while True:
-                    used[k] = 0
-                    relax_dots(
-                        ends[k], ends[k + 1], cap, rows, False, dots, self._table,
-                        self.grid.border, self._field_for(weighted), self.over, new, cells,
-                        _NO_STARS, mine, LLOYD,
-                    )  # fmt: skip
-                    if not (new.kind[rows[which]] == TOO_MANY_CORNERS).any():
-                        break
-                    cap *= 16
-                beyond = mine.beyond[: used[k]]
-                is_dot = beyond >= 0
-                beyond[is_dot] = number[beyond[is_dot]]
-                measured[:, which] = cells[rows[which]].T
+                if not (new.kind[rows[mine]] == TOO_MANY_CORNERS).any():
+                    break
+                cap *= 16
+            other = out.beyond[: used[k]]
+            is_dot = other >= 0
+            other[is_dot] = number[other[is_dot]]
+            measured[:, mine] = cells[rows[mine]].T
 
         while True:
             last = np.cumsum(room)
-            total = int(last[-1])
-            out = np.empty((total, 2)), np.empty(total, np.int32), np.empty(total, np.int32)
-            parallel_for(outline_parts, n_parts, grain=1, chunks=PARTS)
+            corner, beyond, following = _room_for_sides(int(last[-1]))
+            for first in range(0, n_parts, AT_ONCE):
+
+                def parts(start: int, stop: int, first: int = first) -> None:
+                    for k in range(first + start, first + stop):
+                        outline_part(k)
+
+                parallel_for(parts, min(AT_ONCE, n_parts - first), grain=1, chunks=AT_ONCE)
+                yield min((first + AT_ONCE) / n_parts, 1.0)
             if (used <= room).all():
                 break
             room = used.copy()
-        corner, beyond, following = out
         n_used = 0
-        for first, count in zip(last - room, used, strict=True):
-            source, target = slice(first, first + count), slice(n_used, n_used + count)
+        for start, count in zip(last - room, used, strict=True):
+            source, target = slice(start, start + count), slice(n_used, n_used + count)
             corner[target], beyond[target] = corner[source], beyond[source]
             following[target] = following[source] + n_used
             n_used += int(count)
-        corner, beyond, following = (array[:n_used] for array in out)
-        return Outlines(corner, beyond, following, n_sides, np.array([n_used])), rows, measured
+        found = corner[:n_used], beyond[:n_used], following[:n_used]
+        return Outlines(*found, n_sides, np.array([n_used])), rows, measured
 
     def _field_for(self, weighted: bool) -> Field:
         return self._field if weighted else NO_FIELD
@@ -495,3 +500,7 @@ class Cells:
                 bound_crowds, len(self._crowd), self._crowd, self._tree_of_cell, self._cell_start,
                 self.xs, self.ys, self._node, grain=1, chunks=16,
             )  # fmt: skip
+
+
+def _room_for_sides(n: int) -> tuple[Floats, Rows, Rows]:
+    return np.empty((n, 2)), np.empty(n, np.int32), np.empty(n, np.int32)

@@ -24,7 +24,7 @@ from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
-from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import DotRule, rule_for
 from stippler.stippling.window import Window
 
@@ -186,8 +186,8 @@ class PageRaster:
         points: NDArray[np.float64],
         which: NDArray[np.integer] | None = None,
         depth: float = math.inf,
-    ) -> Tessellation:
-        """Return the cells of dots on the page, in pixels, with the ink they ask for as mass.
+    ) -> Making:
+        """Compute the cells of dots on the page, in pixels, with the ink they ask for as mass.
 
         Parameters
         ----------
@@ -203,7 +203,7 @@ class PageRaster:
             page = shapely.box(0.0, 0.0, w, h) - shapely.box(depth, depth, w - depth, h - depth)
         at = np.clip(points, 0.0, (w, h))
         ink = DensityField(self.darkness[::k, ::k], float(k))  # pixels as they came weigh the same
-        return Tessellation.of(at, page, None, ink, which)
+        return Tessellation.making(at, page, None, ink, which)
 
     def wanted_at(
         self, points: NDArray[np.float64]

@@ -14,6 +14,7 @@ from stippler.kernels.tone.edge_ink import even_rim as even_along
 from stippler.stippling.compartments import Compartments
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.radii import solve_radii
+from stippler.stippling.tessellation import made
 
 _APART = 0.5  # of the distance to the seventh neighbour
 _ENOUGH = 1.0  # of the spacing that the density asks for
@@ -95,7 +96,7 @@ def even_rim(points: NDArray[np.float64], raster: PageRaster, give: float) -> ND
     band = strip[within]
     if not len(band):
         return points
-    radii = solve_radii(raster.cells(points[strip], within, 2.0 * width), raster.rule)
+    radii = solve_radii(made(raster.cells(points[strip], within, 2.0 * width)), raster.rule)
     line = _LINE * raster.rule.radius_min
     for axis, far, edge in (
         (1, False, darkness[0]),

@@ -28,7 +28,7 @@ from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import AT_REST, Relaxation, StepReport
 from stippler.stippling.spacing import AT_LAST, TO_INK, Wanted
 from stippler.stippling.task import Standing, Task
-from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tessellation import Tessellation, made
 from stippler.stippling.tone import DotRule, ink_for
 from stippler.stippling.transport import with_long_waves_gone
 
@@ -332,7 +332,7 @@ class _Sheet:
         pixel = self.raster.pixel_mm
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / pixel
         if self._within is None:
-            cells = self.raster.cells(inside)
+            cells = made(self.raster.cells(inside))
         else:
             parts, of_dot = self._within
             field = DensityField(self.raster.darkness, 1.0)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import shapely
@@ -75,18 +75,29 @@ class Tessellation:
 
         With `which`, (k,) int, those of some dots alone, in that order: as they are among all.
         """
+        return made(cls.making(points, polygon, compartment_of_dot, density, which))
+
+    @classmethod
+    def making(
+        cls,
+        points: ArrayLike,
+        polygon: Shape | Sequence[Shape] | ArrayLike,
+        compartment_of_dot: ArrayLike | None = None,
+        density: Weights | None = None,
+        which: NDArray[np.integer] | None = None,
+    ) -> Making:
+        """Compute the cells as `of` does, a part after the other."""
         from stippler.stippling.relax import Relaxation
 
-        engine = Relaxation(points, polygon, None, compartment_of_dot, density)
-        return engine.tessellation(which=which)
+        return Relaxation(points, polygon, None, compartment_of_dot, density).outlining(which=which)
 
     @classmethod
     def of_cells(
         cls, cells: Cells, weighted: bool = True, which: NDArray[np.integer] | None = None
-    ) -> Tessellation:
+    ) -> Making:
         """Read the cells of an engine, in the order that its dots were given in, or of some."""
         some = None if which is None else np.asarray(which, np.int32)
-        outlines, row, measured = cells.outline(weighted, some)
+        outlines, row, measured = yield from cells.outline(weighted, some)
         position = np.column_stack([cells.xs[row], cells.ys[row]])
         start = np.zeros(len(row) + 1, np.int32)
         np.cumsum(outlines.n_sides, out=start[1:])
@@ -138,3 +149,16 @@ class Tessellation:
         """Return dot i's cell as a polygon, mm."""
         rings = self.rings(i)
         return shapely.Polygon(rings[0], rings[1:]) if rings else shapely.Polygon()
+
+
+Making: TypeAlias = Generator[float, None, Tessellation]
+"""A tessellation that is being computed: yields the share done, and returns it."""
+
+
+def made(making: Making) -> Tessellation:
+    """Return a tessellation once it is computed."""
+    while True:
+        try:
+            next(making)
+        except StopIteration as end:
+            return end.value  # type: ignore[no-any-return]
