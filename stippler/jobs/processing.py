@@ -73,13 +73,15 @@ def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Itera
 def _beside(one: AreaTask, finished: Sequence[tuple[int, Progress]]) -> Task:
     import numpy as np
 
-    neighbours = one.task.neighbours_mm
-    if not finished or neighbours is None:
+    position, radius = one.task.neighbours_mm, one.task.neighbours_radius_mm
+    if not finished or position is None or radius is None:
         return one.task
-    renewed = [area for area, _ in finished]
-    stay = neighbours[~np.isin(one.neighbour_area, renewed)]
+    stay = ~np.isin(one.neighbour_area, [area for area, _ in finished])
+    made = [progress for _, progress in finished]
     return replace(
-        one.task, neighbours_mm=np.concatenate((stay, *(made.position_mm for _, made in finished)))
+        one.task,
+        neighbours_mm=np.concatenate((position[stay], *(one.position_mm for one in made))),
+        neighbours_radius_mm=np.concatenate((radius[stay], *(one.radius_mm for one in made))),
     )
 
 

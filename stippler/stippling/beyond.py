@@ -116,10 +116,14 @@ class Beyond:
 NOTHING = Beyond([], np.empty(0, np.intp), [], (), [])
 
 
-def seen_of(policies: BorderPolicies, areas: Sequence[int]) -> tuple[Seen, ...]:
-    """Return what some areas see of others."""
+def seen_of(
+    policies: BorderPolicies, areas: Sequence[int], *, bleeds: bool = True
+) -> tuple[Seen, ...]:
+    """Return what some areas see of others; walls that bleed are such to who does not bleed."""
     return tuple(
-        Seen(border.through, border.walls, policies.partition.part_of(k))
+        Seen(
+            border.through, border.closed if bleeds else border.walls, policies.partition.part_of(k)
+        )
         for k, borders in policies.seen_from(areas).items()
         for border in borders
     )

@@ -15,6 +15,7 @@ from stippler.drawing.style import MAX_DOTS, WALL, Style
 from stippler.kernels.halftone.scan_order import outside_polygon
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.default_number import with_number
+from stippler.stippling.density import DensityField
 from stippler.stippling.field_sums import Weights
 from stippler.stippling.halftone import DROPPED
 from stippler.stippling.page_raster import PageRaster
@@ -76,6 +77,10 @@ class Ground(Protocol):
 
     def ink_field(self) -> Weights:
         """Return the darkness as a weight, in mm from the corner."""
+        ...
+
+    def tone_field(self) -> Weights:
+        """Return the darkness that sizes are to meet, in mm from the corner."""
         ...
 
     def on_page(self, at_mm: Floats) -> Floats:
@@ -153,6 +158,10 @@ class PageGround:
     def ink_field(self) -> Weights:
         """Return the darkness as a weight, mirrored in the bleed."""
         return self.raster.ink_field()
+
+    def tone_field(self) -> Weights:
+        """Return the darkness by the raster's own pixels."""
+        return DensityField(self.raster.darkness, self.raster.pixel_mm)
 
     def on_page(self, at_mm: Floats) -> Floats:
         """Return the places as they are."""
@@ -287,6 +296,10 @@ class AreaGround:
 
     def ink_field(self) -> Weights:
         """Return the darkness as a weight; cells are cut at the border, it is not."""
+        return self._field
+
+    def tone_field(self) -> Weights:
+        """Return the darkness of the picture."""
         return self._field
 
     def on_page(self, at_mm: Floats) -> Floats:

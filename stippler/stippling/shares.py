@@ -57,15 +57,12 @@ def number_of_some(
     style = counted(style, whole.area)
     if style.n_dots is None:
         return style
-    size_mm = (reference.width_mm, reference.height_mm)
     side = math.sqrt(whole.area) / _FINEST
     owner, dark = _sampled(policies.partition, reference, whole.bounds, side, style)
-    rims = []
-    for part, ids in ((whole, group), (own, areas)):
-        lines = Borders.of(part, style.border, size_mm, policies.own_of(ids)).bleeding
-        places = [along_line(one, max(round(one.length / side), 1)) for one in lines]
-        at = np.concatenate([np.empty((0, 2)), *places])
-        rims.append(_seen_as(style, reference, at))
+    rims = [
+        np.concatenate([_rim_of(policies, ids, reference, side, style) for ids in groups])
+        for groups in (policies.joined(group), [areas])
+    ]
     mine, theirs = dark[np.isin(owner, areas)], dark[np.isin(owner, group)]
     sizes = style.size_range_mm
     in_px = None if sizes is None else (sizes[0] / side, sizes[1] / side)
@@ -73,6 +70,21 @@ def number_of_some(
     n = float(rule.density(mine).sum()) + float(rule.per_border(rims[1]).sum())
     n *= own.area / max(len(mine) * side * side, 1e-12)
     return replace(style, n_dots=max(round(n), 1))
+
+
+def _rim_of(
+    policies: BorderPolicies,
+    areas: tuple[int, ...],
+    reference: Reference,
+    side_mm: float,
+    style: Style,
+) -> NDArray[np.float32]:
+    """Return how dark it is along what bleeds of areas that are drawn as one."""
+    size_mm = (reference.width_mm, reference.height_mm)
+    part, border = policies.part_of_all(areas), policies.drawing.border_of(areas[0])
+    lines = Borders.of(part, border, size_mm, policies.own_of(areas)).bleeding
+    places = [along_line(one, max(round(one.length / side_mm), 1)) for one in lines]
+    return _seen_as(style, reference, np.concatenate([np.empty((0, 2)), *places]))
 
 
 def _sampled(

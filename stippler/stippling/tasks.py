@@ -18,7 +18,7 @@ from stippler.drawing.run import Holding
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
 from stippler.stippling.beyond import seen_of
-from stippler.stippling.border_policies import BorderPolicies
+from stippler.stippling.border_policies import BorderPolicies, polygons_in
 from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
 from stippler.stippling.relax_views import View, views_of
@@ -270,10 +270,19 @@ def stippling(
     is_page &= not pieces
     parts = () if is_page else (cut,)
     lines = lines_met(drawing, dots.take(fixed)) if drawing.lines else None
+    seen = () if cut is not part else seen
+    of_each = _of_each(partition, areas, cut) if seen or len(areas) > 1 else ()
     task = Task(style, reference, parts_mm=parts, standing=standing, lines=lines,
-                neighbours_mm=dots.position_mm[others], pieces_mm=pieces,
-                seen_mm=() if cut is not part else seen)  # fmt: skip
+                neighbours_mm=dots.position_mm[others],
+                neighbours_radius_mm=dots.radius_mm[others], pieces_mm=pieces,
+                seen_mm=seen, areas_mm=of_each)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], partition)
+
+
+def _of_each(partition: Partition, areas: Sequence[int], cut: Outline) -> tuple[Outline, ...]:
+    """Return what each of some areas has of the place that their dots may lie in."""
+    owned = [polygons_in(shapely.intersection(partition.part_of(k), cut)) for k in areas]
+    return tuple(part for part in owned if not part.is_empty)
 
 
 def box_around(part: Outline) -> tuple[float, float, float, float]:
@@ -288,6 +297,7 @@ def _known(drawing: Drawing) -> str:
 
 
 def _drawn_as_one(policies: BorderPolicies, areas: tuple[int, ...]) -> tuple[int, ...]:
-    """Return all areas that would be drawn as one with some, which come first."""
+    """Return all areas that would be drawn as one with some but for bleeds; these come first."""
     everyone = [*areas, *(k for k in policies.seeing if k not in areas)]
-    return next(group for group in policies.joined(everyone) if areas[0] in group)
+    groups = policies.joined(everyone, drawn=False)
+    return next(group for group in groups if areas[0] in group)
