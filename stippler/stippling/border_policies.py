@@ -141,7 +141,10 @@ class BorderPolicies:
 
     @cached_property
     def _all_borders(self) -> list[tuple[int, int, Shared]]:
-        seeing, found = self.seeing, []
+        found = list[tuple[int, int, Shared]]()
+        if not self.may_see_through:
+            return found
+        seeing = self.seeing
         parts = [self.partition.part_of(k) for k in seeing]
         first, second = shapely.STRtree(parts).query(parts, predicate="intersects")
         for i, j in sorted(zip(first.tolist(), second.tolist(), strict=True)):
