@@ -62,10 +62,9 @@ def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Itera
     finished: tuple[tuple[int, Progress], ...] = ()
     for one in tasks:
         for progress in run(_beside(one, finished), snapshots=snapshots):
-            of_each = one.of_each(progress)
             if progress.stage == DONE:
-                finished = (*finished, *of_each)
-            area, shown = of_each[0]
+                finished = (*finished, *one.of_each(progress))
+            area, shown = one.of_first(progress)
             yield Work(progress.stage, progress.done, progress.total, progress=shown,
                        area=area, finished=finished)  # fmt: skip
 

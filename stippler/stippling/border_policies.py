@@ -135,14 +135,22 @@ class BorderPolicies:
 
     def _borders(self, areas: Collection[int]) -> Iterable[tuple[int, int, Shared]]:
         """Yield which of some areas that may see others meet, and the border between them."""
-        seeing = [k for k in areas if k in self.seeing]
-        if len(seeing) < 2:
-            return
+        if len(areas) > 1:
+            mine = set(areas)
+            yield from (one for one in self._all_borders if {one[0], one[1]} <= mine)
+
+    @cached_property
+    def _all_borders(self) -> list[tuple[int, int, Shared]]:
+        found = list[tuple[int, int, Shared]]()
+        if not self.may_see_through:
+            return found
+        seeing = self.seeing
         parts = [self.partition.part_of(k) for k in seeing]
         first, second = shapely.STRtree(parts).query(parts, predicate="intersects")
         for i, j in sorted(zip(first.tolist(), second.tolist(), strict=True)):
             if i < j and (shared := self.between(seeing[i], seeing[j])) is not None:
-                yield seeing[i], seeing[j], shared
+                found.append((seeing[i], seeing[j], shared))
+        return found
 
     @cached_property
     def _all_pairs(self) -> list[tuple[int, int, Shared]]:
@@ -287,7 +295,8 @@ def merged(edges: Edges) -> MultiLineString:
     if not len(edges):
         return MultiLineString()
     lines = shapely.multilinestrings(shapely.linestrings(edges.reshape(-1, 2, 2)))
-    return MultiLineString(shapely.get_parts(shapely.line_merge(lines)).tolist())
+    found: MultiLineString = shapely.multilinestrings(shapely.get_parts(shapely.line_merge(lines)))
+    return found
 
 
 def polygons_in(shape: shapely.Geometry) -> Outline:

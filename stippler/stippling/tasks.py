@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -183,12 +183,20 @@ class AreaTask:
 
     def of_each(self, made: Progress) -> tuple[tuple[int, Progress], ...]:
         """Return the dots of each area; what all fall short of is told with the first."""
+        return tuple(self._of(self.areas, made))
+
+    def of_first(self, made: Progress) -> tuple[int, Progress]:
+        """Return the first area, and its dots."""
+        ((area, own),) = self._of(self.areas[:1], made)
+        return area, own
+
+    def _of(self, areas: Sequence[int], made: Progress) -> Iterator[tuple[int, Progress]]:
         if len(self.areas) == 1:
-            return ((self.areas[0], made),)
+            yield self.areas[0], made
+            return
         owner = self.partition.area_at(made.position_mm)
         owner[~np.isin(owner, self.areas)] = self.areas[0]
-        found = []
-        for k in self.areas:
+        for k in areas:
             mine = owner == k
             position, radius = made.position_mm[mine], made.radius_mm[mine]
             position.flags.writeable = radius.flags.writeable = False
@@ -198,8 +206,7 @@ class AreaTask:
                 held = Holding(held.curve[mine], held.along_mm[mine])
             one = replace(made, position_mm=position, radius_mm=radius, shortfall=lack,
                           holding=held)  # fmt: skip
-            found.append((k, one))
-        return tuple(found)
+            yield k, one
 
 
 def stippling(
