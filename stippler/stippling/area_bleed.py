@@ -22,6 +22,7 @@ from stippler.stippling.page_raster import (
 )
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.task import STIPPLE, Task
+from stippler.stippling.tessellation import made
 from stippler.stippling.tone import DotRule, rule_for
 
 _STRIP = 2.0  # mean spacings that dots are laid out beyond a line; wider made no rim more even
@@ -191,9 +192,9 @@ class Rim:
         self._lines = NearLines(self.borders.bleeding, _CELLS * self._spacing)
         near = self._lines.nearest(points * side + np.array(ground.origin_mm))
         band = np.flatnonzero(np.isfinite(near.away))
-        n_in_box = round(raster.darkness.size * side**2 / self._spacing**2)
-        *_, (_, radii) = solve_radii(points[band], raster.darkness, raster.rule, n_in_box)
-        self._radius_mm = radii * side
+        others = ground.sized_among
+        cells = ground.cells(np.concatenate((others, points)), len(others) + band)
+        self._radius_mm = solve_radii(made(cells), raster.rule) * side
         return band
 
     def evened(self, ground: AreaGround, points: Floats, give: float) -> Evened:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from stippler.drawing.outline_grid import OutlineGrid
 from stippler.kernels.machine.pool import parallel_for
-from stippler.kernels.tone.ink_of_areas import ink_beyond, ink_in_outlines
+from stippler.kernels.tone.ink_of_areas import ink_beyond, ink_in_cells
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.field_sums import Weights
 from stippler.stippling.near_lines import NearLines
@@ -129,19 +129,24 @@ class _Ink:
         if not len(self._cut):
             return np.asarray(np.bincount(self.area_of_dot[mine], ink[mine], n))
         cut, beyond = np.empty(len(self._cut)), np.empty(len(self._dot))
-        parallel_for(ink_in_outlines, len(cut), *self._cells, self._cell_of, radii[self._cut], cut)
+        first, corner, following = self._cells
+        parallel_for(
+            ink_in_cells, len(cut), first, corner, following, self._cell_of, radii[self._cut], cut
+        )
         ink[self._cut] = cut
         parallel_for(
-            ink_beyond, len(beyond), *self._cells, self._at, self._border, radii[self._dot], beyond
+            ink_beyond, len(beyond), first, corner, self._at, self._border, radii[self._dot], beyond
         )
         whole = np.bincount(self.area_of_dot[mine], ink[mine], n)
         return np.asarray(whole - np.bincount(self._area_beyond, beyond, n))
 
 
-def _cells_of(position: Floats, reach: float) -> tuple[Floats, NDArray[np.int32]]:
-    """Return corners of dots' cells, true as far as a reach, and where those of each begin."""
+def _cells_of(
+    position: Floats, reach: float
+) -> tuple[NDArray[np.int32], Floats, NDArray[np.int32]]:
+    """Return the sides of dots' cells, true as far as a reach, as `ink_in_cells` takes them."""
     if not len(position):
-        return np.empty((0, 2)), np.zeros(1, np.int32)
+        return np.zeros(1, np.int32), np.empty((0, 2)), np.empty(0, np.int32)
     low, high = position.min(axis=0) - reach, position.max(axis=0) + reach
     cells = Tessellation.of(position, shapely.box(*low, *high))
-    return cells.corner, cells.start
+    return cells.start, cells.corner, cells.following

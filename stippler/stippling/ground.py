@@ -22,7 +22,7 @@ from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.postprocess import at_edge, even_rim
 from stippler.stippling.style_tone import curves_of, toned
-from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import DotRule
 from stippler.stippling.window import Window
 
@@ -91,8 +91,8 @@ class Ground(Protocol):
         """Return the compartments, in pixels, and that of each dot; None is the page."""
         ...
 
-    def cells(self, points: Floats) -> Tessellation | None:
-        """Return the dots' cells, in pixels, with the ink they ask for; None is the page."""
+    def cells(self, points: Floats) -> Making:
+        """Compute the dots' cells, in pixels, with the ink they ask for as mass."""
         ...
 
     @property
@@ -171,9 +171,9 @@ class PageGround:
         """Return None: dots at the edge slide along it."""
         return None
 
-    def cells(self, points: Floats) -> Tessellation | None:
-        """Return None: the cells are the page's."""
-        return None
+    def cells(self, points: Floats) -> Making:
+        """Compute the dots' cells on the page."""
+        return self.raster.cells(points)
 
     @property
     def bleeds(self) -> bool:
@@ -315,12 +315,15 @@ class AreaGround:
         """Return the parts of the area, and that of each dot."""
         return self._parts, self._parts.find(points, None)
 
-    def cells(self, points: Floats) -> Tessellation | None:
-        """Return the dots' cells, cut at the border, or with those that are seen across it."""
+    def cells(self, points: Floats, which: NDArray[np.intp] | None = None) -> Making:
+        """Compute the dots' cells, cut at the border, or with those that are seen across it.
+
+        Or those of the dots `which` alone.
+        """
         side = self.raster.pixel_mm
         (w, h), (x, y) = self._field.pixel_mm, self._field.origin_mm
         field = replace(self._field, pixel_mm=(w / side, h / side), origin_mm=(x / side, y / side))
-        return Tessellation.of(points, list(self._sized_in.polygons), None, field)
+        return Tessellation.making(points, list(self._sized_in.polygons), None, field, which)
 
     @property
     def after_trim(self) -> Ground:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
 from stippler.stippling.radii import Sizes
 from stippler.stippling.stretched import InkOfShapes, is_stretched, shapes_of
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
 
 _PARTED, _LAST = 40, 200  # thousandths of the work on the tone before sizes are solved
@@ -106,15 +107,11 @@ def radii(draft: Draft, watched: bool) -> Iterator[Step]:
         there = np.concatenate((draft.ground.sized_among, there))
     n = len(there)
     points = np.concatenate((there, draft.points)) if n else draft.points
-    cells = draft.ground.cells(points) if len(points) else None
-    raster = draft.raster
-    sizes = Sizes(points, raster.darkness, raster.rule, tessellation=cells)
-    if len(points):
-        for share in sizes.prepare():
-            yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
-        for share in sizes.solve():
-            yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
-    if is_long and len(points) and raster.rule.varies:
+    cells = yield from _told(draft.ground.cells(points))
+    sizes = Sizes(cells, draft.raster.rule)
+    for share in sizes.solve():
+        yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
+    if is_long and len(points) and draft.raster.rule.varies:
         _for_long_dots(draft, points, sizes)
     draft.radii = sizes.radii[n:]
     if draft.task.areas_mm and len(draft.points) and not is_long:
@@ -151,6 +148,16 @@ def _by_area(draft: Draft, sizes: Sizes) -> Floats:
     found = sizes_of_areas(areas, at, radius_mm, ink, moved, limits, ground.tone_field())
     changed = found[moved] != radius_mm[moved]
     return np.where(changed, found[moved] / pixel, sizes.radii[n_there:])
+
+
+def _told(making: Making) -> Generator[Step, None, Tessellation]:
+    """Compute cells, and tell how far that is."""
+    while True:
+        try:
+            share = next(making)
+        except StopIteration as end:
+            return end.value  # type: ignore[no-any-return]
+        yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
 
 
 def _for_long_dots(draft: Draft, points: Floats, sizes: Sizes) -> None:

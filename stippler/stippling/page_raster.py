@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
@@ -20,8 +21,10 @@ from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.darkness_levels import look_up_levels
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
+from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import DotRule, rule_for
 from stippler.stippling.window import Window
 
@@ -177,6 +180,30 @@ class PageRaster:
 
         parallel_for(part, len(points), grain=_BAND, chunks=_BANDS)
         return radii
+
+    def cells(
+        self,
+        points: NDArray[np.float64],
+        which: NDArray[np.integer] | None = None,
+        depth: float = math.inf,
+    ) -> Making:
+        """Compute the cells of dots on the page, in pixels, with the ink they ask for as mass.
+
+        Parameters
+        ----------
+        points : (n, 2) float64, pixels
+        which : (k,) int, optional
+            Only of these.
+        depth : float, pixels
+            How far from the page's edge the dots lie at most: their cells go no farther.
+        """
+        (h, w), k = self.darkness.shape, self.divided
+        page: Shape = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
+        if 2.0 * depth < min(w, h):
+            page = shapely.box(0.0, 0.0, w, h) - shapely.box(depth, depth, w - depth, h - depth)
+        at = np.clip(points, 0.0, (w, h))
+        ink = DensityField(self.darkness[::k, ::k], float(k))  # pixels as they came weigh the same
+        return Tessellation.making(at, page, None, ink, which)
 
     def wanted_at(
         self, points: NDArray[np.float64]

@@ -17,7 +17,7 @@ from stippler.drawing.style import Style
 from stippler.files.read.picture import read_picture
 from stippler.jobs.processing import process_now, tasks_of
 from stippler.kernels.machine import pool
-from stippler.kernels.tone.ink_of_areas import ink_beyond, ink_in_outlines
+from stippler.kernels.tone.ink_of_areas import ink_beyond, ink_in_cells
 from stippler.resources import assets
 from stippler.stippling.pipeline import run
 from stippler.stippling.style_tone import toned
@@ -251,8 +251,9 @@ def test_ink_of_a_dot_in_a_polygon(seed):
     r, n = float(rng.uniform(0.1, 1.5)), len(side) - 1
     first, here = np.array([0, len(cell)], np.int32), np.zeros(n, np.int64)
     whole, beyond = np.empty(1), np.empty(n)
-    ink_in_outlines(0, 1, cell, first, here[:1], np.full(1, r), whole)
-    ink_beyond(0, n, cell, first, here, np.hstack([side[:-1], side[1:]]), np.full(n, r), beyond)
+    following = np.roll(np.arange(len(cell), dtype=np.int32), -1)
+    ink_in_cells(0, 1, first, cell, following, here[:1], np.full(1, r), whole)
+    ink_beyond(0, n, first, cell, here, np.hstack([side[:-1], side[1:]]), np.full(n, r), beyond)
     disc = Point(0, 0).buffer(r, quad_segs=2000).intersection(Polygon(cell))
     inside = float(polygon.contains(Point(0, 0)))
     assert whole[0] == pytest.approx(disc.area, abs=1e-5)

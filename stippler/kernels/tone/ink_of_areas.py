@@ -19,47 +19,34 @@ Array = NDArray[Any]
 
 @kernel
 def ink_in_cells(
-    start: int, stop: int, corners: Array, n_corners: Array, radii: Array, ink: Array
-) -> None:
-    """Write what dots lay down within their cells, as `fit_radii` takes these."""
-    for i in range(start, stop):
-        ink[i], _arc = disc_in_cell(corners[i], n_corners[i], radii[i])
-
-
-@kernel
-def ink_in_outlines(
     start: int,
     stop: int,
-    corner: Array,
     first: Array,
+    corner: Array,
+    following: Array,
     cell_of: Array,
     radii: Array,
     ink: Array,
 ) -> None:
-    """Write what dots lay down within convex cells, the corners of one after those of another.
+    """Write what dots lay down within their cells, which come as `fit_radii` takes them.
 
     Parameters
     ----------
-    corner : (m, 2) float64
-        Seen from the dot, counter-clockwise.
-    first : (c + 1,) int32
-        Where the corners of each cell begin.
     cell_of : (k,) int64
         The cells asked for.
     radii, ink : (k,) float64
     """
     for k in range(start, stop):
         c = cell_of[k]
-        cell = corner[first[c] : first[c + 1]]
-        ink[k], _arc = disc_in_cell(cell, len(cell), radii[k])
+        ink[k], _arc = disc_in_cell(corner, following, first[c], first[c + 1], radii[k])
 
 
 @kernel
 def ink_beyond(
     start: int,
     stop: int,
-    corner: Array,
     first: Array,
+    corner: Array,
     cell_of: Array,
     border: Array,
     radii: Array,
@@ -67,7 +54,7 @@ def ink_beyond(
 ) -> None:
     """Write what dots lay down in their cells beyond pieces of border, as seen from the dot.
 
-    Parameters are those of `ink_in_outlines`, but for:
+    Parameters are those of `ink_in_cells`, the cells convex, and:
 
     border : (k, 4) float64
         Ends of the piece, seen from the dot; below 0 is what lies beyond one that runs clockwise.
