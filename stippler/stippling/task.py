@@ -110,6 +110,8 @@ class Task:
         Pieces of the border that are to dots something else than the style says.
     seen_mm : tuple of Seen
         Through which pieces of the border which neighbours' dots are seen.
+    bleeds_onto_mm : tuple of Seen
+        Over which pieces of the border dots run off onto which neighbours.
     lines : MetLines or None
         What the standing dots line up on while they are moved.
     areas_mm : tuple of shapely Polygon or MultiPolygon
@@ -127,5 +129,6 @@ class Task:
     neighbours_radius_mm: NDArray[np.float32] | None = None
     pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()
     seen_mm: tuple[Seen, ...] = ()
+    bleeds_onto_mm: tuple[Seen, ...] = ()
     lines: MetLines | None = None
     areas_mm: tuple[Polygon | MultiPolygon, ...] = ()

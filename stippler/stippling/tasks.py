@@ -17,7 +17,7 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.run import Holding
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.beyond import seen_of
+from stippler.stippling.beyond import bled_onto, seen_of
 from stippler.stippling.border_policies import BorderPolicies, polygons_in
 from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
@@ -278,11 +278,12 @@ def stippling(
     parts = () if is_page else (cut,)
     lines = lines_met(drawing, dots.take(fixed)) if drawing.lines else None
     seen = () if cut is not part else seen
-    of_each = _of_each(partition, areas, cut) if seen or len(areas) > 1 else ()
+    onto = bled_onto(policies, areas) if cut is part else ()
+    of_each = _of_each(partition, areas, cut) if seen or onto or len(areas) > 1 else ()
     task = Task(style, reference, parts_mm=parts, standing=standing, lines=lines,
                 neighbours_mm=dots.position_mm[others],
                 neighbours_radius_mm=dots.radius_mm[others], pieces_mm=pieces,
-                seen_mm=seen, areas_mm=of_each)  # fmt: skip
+                seen_mm=seen, bleeds_onto_mm=onto, areas_mm=of_each)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], partition)
 
 
