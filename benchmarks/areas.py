@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from benchmarks import area_borders
 from benchmarks.figures import Figure
 from stippler.drawing.line import ADHERE, Line
 from stippler.drawing.planar import edits, moves
@@ -44,6 +45,7 @@ def figures(*, quick: bool = False) -> list[Figure]:
                step_ms(areas, dots, repeats), "ms", 30, 5),
         *settled_figures(5_000 if quick else 50_000, 3 if quick else 9),
         *picture_figures(3 if quick else 5),
+        *area_borders.figures(quick=quick),
     ]  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from stippler.stippling.halftone import FirstDots, pulse_density, supersampling
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.stipple import stages
+from stippler.stippling.tessellation import made
 
 _PICTURE = Path(__file__).parents[1] / "tests/data/sphere_ramp.png"
 _DOTS = 60_000
@@ -46,8 +47,7 @@ def figures(quick: bool = False) -> list[Figure]:
         ),
         Figure(
             "tone of 60,000 relaxed dots solved",
-            1e3
-            * median_s(lambda: list(solve_radii(points, raster.darkness, raster.rule)), repeats),
+            1e3 * median_s(lambda: solve_radii(made(raster.cells(points)), raster.rule), repeats),
             "ms",
             150.0,
         ),

@@ -67,9 +67,7 @@ def _stippled(reference: Reference, style: Style, area: shapely.Polygon) -> None
     engine.run(_STEPS - 1)
     engine.set_rules(TO_INK)
     engine.step()
-    cells = engine.tessellation()
-    for _ in solve_radii(engine.points, reference.darkness, first.rule, tessellation=cells):
-        pass
+    solve_radii(engine.tessellation(), first.rule)
 
 
 def _processing(reference: Reference, area: shapely.Polygon) -> Callable[[], object]:

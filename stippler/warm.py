@@ -147,14 +147,15 @@ def parts() -> Iterator[tuple[str, Callable[[], object]]]:
 
 
 def _stipple_an_area(reference: Reference) -> None:
-    from shapely.geometry import Polygon
+    from shapely.geometry import Polygon, box
 
     from stippler.drawing.style import Style
     from stippler.stippling.pipeline import run
     from stippler.stippling.task import Task
 
     part = Polygon([(2, 2), (18, 5), (9, 9), (12, 18)])
-    list(run(Task(Style(n_dots=100, iterations=3), reference, parts_mm=(part,))))
+    halves = part & box(0, 0, 10, 20), part & box(10, 0, 20, 20)
+    list(run(Task(Style(n_dots=100, iterations=3), reference, parts_mm=(part,), areas_mm=halves)))
 
 
 def _bend_and_adhere() -> None:

@@ -82,6 +82,4 @@ def use_areas() -> None:
         plain.run(3)
     engine.set_rules(TO_INK)
     engine.step()
-    cells = engine.tessellation()
-    for _, _radii in solve_radii(engine.points, ramp, first.rule, tessellation=cells):
-        pass
+    solve_radii(engine.tessellation(), first.rule)

@@ -113,9 +113,7 @@ for method in ("lloyd", "even"):
         engine = Relaxation(np.concatenate(dots), shapes, None, owner, field, method=method)
         engine.run(3)
         look(f"{method}, {field is not None}")
-cells = engine.tessellation()
-for _ in solve_radii(engine.points, reference.darkness, DotRule(0.1, 0.2), tessellation=cells):
-    pass
+solve_radii(engine.tessellation(), DotRule(0.1, 0.2))
 look("sizes")
 print(json.dumps(late))
 """

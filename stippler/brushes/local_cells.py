@@ -241,9 +241,10 @@ def density_in(reference: Reference, box: Box) -> DensityField:
 
 def darkness_in(reference: Reference, box: Box) -> DensityField:
     """Cut the part in a box out of the reference."""
-    h, w = reference.darkness.shape
+    h, w = reference.source.levels.shape
     side = reference.pixel_mm
     i0, j0 = (min(max(math.floor(v / side), 0), n - 1) for v, n in ((box[0], w), (box[1], h)))
     i1, j1 = (min(max(math.ceil(v / side), 1), n) for v, n in ((box[2], w), (box[3], h)))
-    part = reference.darkness[j0 : max(j1, j0 + 1), i0 : max(i1, i0 + 1)]
+    rows, columns = slice(j0, max(j1, j0 + 1)), slice(i0, max(i1, i0 + 1))
+    part = reference.levels.darkness(rows, columns)
     return DensityField(part, side, (i0 * side, j0 * side))

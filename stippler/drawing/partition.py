@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import compress
 from typing import TypeAlias
 
 import numpy as np
@@ -48,7 +49,7 @@ class Partition:
         """Return what an area owns: its outline without those above it; may be empty."""
         if k not in self._parts:
             mine, above = self._outlines[k], [o for i, o in self._outlines.items() if i > k]
-            near = [o for o in above if shapely.intersects(o, mine)]
+            near = list(compress(above, shapely.intersects(above, mine)))
             part = shapely.difference(mine, shapely.union_all(near)) if near else mine
             self._parts[k] = _polygons_in(part)
         return self._parts[k]

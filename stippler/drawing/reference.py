@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Self
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.adjustment import NEUTRAL, Adjustment
-from stippler.drawing.levels import levels_of
+from stippler.drawing.levels import Curve, Levels
 from stippler.errors import ParameterError
+
+_DIGEST = re.compile("[0-9a-f]{32}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,8 +24,8 @@ class Picture:
 
     Attributes
     ----------
-    darkness : (h, w) float32, read-only
-        0 (white, weight exactly 0) to 1 (black).
+    levels : Levels
+        Its darkness; the only form in which it is kept.
     tone : str
         How darkness was taken from it.
     name : str
@@ -31,35 +34,37 @@ class Picture:
         The file as it came; None where it came from no file, or was not kept.
     """
 
-    darkness: NDArray[np.float32]
+    levels: Levels
     tone: str = "linear"
     name: str = ""
     data: bytes | None = None
     _digest: list[str] = field(default_factory=list)
-    _levels: list[NDArray[np.uint16]] = field(default_factory=list)
 
-    def __post_init__(self) -> None:
-        values = self.darkness
-        if values.ndim != 2 or values.size == 0:
-            raise ParameterError("a reference is a 2-d field with at least one pixel", "reference")
-        low, high = float(values.min()), float(values.max())
-        if not (low >= 0.0 and high <= 1.0):  # also catches NaN
-            raise ParameterError("darkness has to lie in 0..1 and be finite", "reference")
-        object.__setattr__(self, "darkness", _frozen(values))
+    @classmethod
+    def of(
+        cls, darkness: NDArray[np.floating], tone: str = "linear", name: str = "", digest: str = ""
+    ) -> Self:
+        """Make the picture of a field of darkness, 0..1, that came from no file.
 
-    @property
-    def levels(self) -> NDArray[np.uint16]:
-        """The darkness as 16-bit levels, read-only; made when first asked for, and once."""
-        if not self._levels:
-            self._levels.append(levels_of(self.darkness))
-        return self._levels[0]
+        Parameters
+        ----------
+        digest : str
+            The one it was kept under; else, and if this is none, its own. Fields that files of
+            earlier versions hold may be rounded now, and what names them is to find them still.
+        """
+        known = [digest] if _DIGEST.fullmatch(digest) else []
+        return cls(Levels.of(darkness), tone, name, None, known)
 
     @property
     def digest(self) -> str:
         """What tells this picture, read in this tone, from all others."""
         if not self._digest:
-            mixed = hashlib.blake2b(f"{self.tone} {self.darkness.shape}".encode(), digest_size=16)
-            mixed.update(self.darkness.data if self.data is None else self.data)
+            mixed = hashlib.blake2b(f"{self.tone} {self.levels.shape}".encode(), digest_size=16)
+            if self.data is not None:
+                mixed.update(self.data)
+            else:
+                for band in self.levels.bands():
+                    mixed.update(band.data)
             self._digest.append(mixed.hexdigest())
         return self._digest[0]
 
@@ -67,7 +72,7 @@ class Picture:
         return self is other or (isinstance(other, Picture) and self.digest == other.digest)
 
     def __hash__(self) -> int:
-        return hash(self.darkness.shape)
+        return hash(self.levels.shape)
 
 
 class Reference:
@@ -89,10 +94,10 @@ class Reference:
         How its darkness is changed before dots are made of it.
     """
 
-    __slots__ = ("_darkness", "_plain", "adjustment", "source", "width_mm")
+    __slots__ = ("_plain", "_values", "adjustment", "source", "width_mm")
 
-    def __init__(self, darkness: NDArray[np.float32], width_mm: float) -> None:
-        self._set(Picture(darkness), width_mm, NEUTRAL)
+    def __init__(self, darkness: NDArray[np.floating], width_mm: float) -> None:
+        self._set(Picture.of(darkness), width_mm, NEUTRAL)
 
     @classmethod
     def of(cls, source: Picture, width_mm: float, adjustment: Adjustment = NEUTRAL) -> Self:
@@ -105,15 +110,30 @@ class Reference:
         if not (np.isfinite(width_mm) and width_mm > 0):
             raise ParameterError(f"{width_mm} mm is no width", "page", "give a width above 0")
         self.source, self.width_mm, self.adjustment = source, width_mm, adjustment
-        self._darkness = source.darkness if adjustment == NEUTRAL else None
+        self._values = source.levels.values if adjustment == NEUTRAL else None
         self._plain: Reference | None = None
 
     @property
+    def values(self) -> NDArray[np.float32]:
+        """What the picture's levels are as adjusted, read-only, (n,)."""
+        if self._values is None:
+            self._values = self.adjustment.apply(self.source.levels.values)
+            self._values.flags.writeable = False
+        return self._values
+
+    @property
+    def levels(self) -> Levels:
+        """The darkness of all pixels as adjusted; nothing of a pixel's size is worked out."""
+        return Levels(self.source.levels.of_pixel, self.values)
+
+    @property
     def darkness(self) -> NDArray[np.float32]:
-        """The picture's darkness as adjusted, read-only; worked out when it is first asked for."""
-        if self._darkness is None:
-            self._darkness = _frozen(self.adjustment.apply(self.source.darkness))
-        return self._darkness
+        """The darkness of all pixels as adjusted, (h, w), read-only; worked out each time."""
+        return self.levels.darkness()
+
+    def table(self, *curves: Curve) -> NDArray[np.float32]:
+        """Return what the adjustment and then curves make of each level; see `Levels.table`."""
+        return self.source.levels.table(self.adjustment.apply, *curves)
 
     @property
     def picture(self) -> Reference:
@@ -135,7 +155,7 @@ class Reference:
         return made
 
     def light(self) -> Reference:
-        """Return an equal value that holds no darkness of its own, for a history to keep."""
+        """Return an equal value that holds no table of its own, for a history to keep."""
         made = Reference.of(self.source, self.width_mm, self.adjustment)
         made._plain = self._plain
         return made
@@ -143,14 +163,12 @@ class Reference:
     @property
     def pixel_mm(self) -> float:
         """Side of a pixel on the page."""
-        columns: int = self.source.darkness.shape[1]
-        return self.width_mm / columns
+        return self.width_mm / self.source.levels.shape[1]
 
     @property
     def height_mm(self) -> float:
         """Height of the field on the page."""
-        rows: int = self.source.darkness.shape[0]
-        return self.pixel_mm * rows
+        return self.pixel_mm * self.source.levels.shape[0]
 
     def at(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the darkness at points of the page, between pixels by interpolation.
@@ -164,7 +182,8 @@ class Reference:
             sampled,  # numba: late, for the first frame's sake
         )
 
-        return sampled(self.darkness, 1.0 / self.pixel_mm, position_mm)
+        of_pixel = self.source.levels.of_pixel
+        return sampled(of_pixel, self.values, 1.0 / self.pixel_mm, position_mm)
 
     def to_json(self) -> dict[str, Any]:
         """Return it in JSON's types; the picture by its digest."""
@@ -188,9 +207,3 @@ class Reference:
 
     def __hash__(self) -> int:
         return hash((self.width_mm, self.adjustment))
-
-
-def _frozen(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    fresh = np.ascontiguousarray(values, np.float32)
-    fresh.flags.writeable = False
-    return fresh

@@ -81,7 +81,12 @@ def illustration(
 
     `counts`: how many pixels there are of each value, where these alone are given.
     """
-    pixels = _counts(darkness.ravel()) if counts is None else _shared_out(darkness, counts)
+    pixels = tones_in(darkness.ravel()) if counts is None else _shared_out(darkness, counts)
+    return curve_for(pixels)
+
+
+def curve_for(pixels: NDArray[np.int64]) -> ToneCurve:
+    """Choose the curve by how many pixels there are of each tone, as `tones_in` counts them."""
     share = pixels / max(int(pixels.sum()), 1)
     levels = (np.arange(_LEVELS) + 0.5) / _LEVELS
     white = _white_of(share, levels)
@@ -94,8 +99,8 @@ def illustration(
     return ToneCurve(white, black, _gamma_for(share, levels, white, black), DEEPEST)
 
 
-def _counts(darkness: NDArray[np.float32]) -> NDArray[np.int64]:
-    """Return how many pixels there are of each level."""
+def tones_in(darkness: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Return how many of (n,) pixels there are of each of 1,024 tones."""
     found = np.zeros(_LEVELS, np.int64)
     for first in range(0, len(darkness), _AT_ONCE):  # what lies between fits the cache
         bins = (darkness[first : first + _AT_ONCE] * np.float32(_LEVELS)).astype(np.intp)

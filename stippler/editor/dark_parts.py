@@ -33,8 +33,9 @@ def dark_outlines(drawing: Drawing, reference: Reference, level: float = 1.0) ->
 
     from stippler.analysis.region_outlines import outlines_of
 
-    step = max(1, -(-max(reference.darkness.shape) // _MOST_SIDE))
-    darkness = reference.darkness[::step, ::step]
+    levels = reference.levels
+    step = max(1, -(-max(levels.shape) // _MOST_SIDE))
+    darkness = levels.darkness(slice(None, None, step), slice(None, None, step))
     pixel_mm = reference.pixel_mm * step
     dark = darkness > min(_darkest(drawing, reference), level)
     near = ndimage.generate_binary_structure(2, 2)

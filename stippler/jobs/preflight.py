@@ -94,7 +94,7 @@ def warning(job: str, n_dots: int, n_pixels: int = 0) -> str:
 def processing_warning(drawing: Drawing, styles: Iterable[Style]) -> str:
     """Return what to tell before areas of some styles are made anew, one after the other."""
     reference = drawing.reference
-    n_pixels = 0 if reference is None else reference.source.darkness.size
+    n_pixels = 0 if reference is None else reference.source.levels.size
     n_dots = max((style.n_dots or DEFAULT_DOTS for style in styles), default=0)
     return warning("process", n_dots, n_pixels)
 

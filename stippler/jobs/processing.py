@@ -62,10 +62,9 @@ def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Itera
     finished: tuple[tuple[int, Progress], ...] = ()
     for one in tasks:
         for progress in run(_beside(one, finished), snapshots=snapshots):
-            of_each = one.of_each(progress)
             if progress.stage == DONE:
-                finished = (*finished, *of_each)
-            area, shown = of_each[0]
+                finished = (*finished, *one.of_each(progress))
+            area, shown = one.of_first(progress)
             yield Work(progress.stage, progress.done, progress.total, progress=shown,
                        area=area, finished=finished)  # fmt: skip
 
@@ -73,13 +72,15 @@ def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Itera
 def _beside(one: AreaTask, finished: Sequence[tuple[int, Progress]]) -> Task:
     import numpy as np
 
-    neighbours = one.task.neighbours_mm
-    if not finished or neighbours is None:
+    position, radius = one.task.neighbours_mm, one.task.neighbours_radius_mm
+    if not finished or position is None or radius is None:
         return one.task
-    renewed = [area for area, _ in finished]
-    stay = neighbours[~np.isin(one.neighbour_area, renewed)]
+    stay = ~np.isin(one.neighbour_area, [area for area, _ in finished])
+    made = [progress for _, progress in finished]
     return replace(
-        one.task, neighbours_mm=np.concatenate((stay, *(made.position_mm for _, made in finished)))
+        one.task,
+        neighbours_mm=np.concatenate((position[stay], *(one.position_mm for one in made))),
+        neighbours_radius_mm=np.concatenate((radius[stay], *(one.radius_mm for one in made))),
     )
 
 

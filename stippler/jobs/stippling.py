@@ -35,7 +35,7 @@ def stipple_picture(
         reference, notes = read_source(source)
         yield Work(READ, 1, 1, reference.adjusted(source.adjustment), notes=notes)
     reference = reference.adjusted(source.adjustment)
-    n_dots, n_pixels = style.n_dots or DEFAULT_DOTS, reference.source.darkness.size
+    n_dots, n_pixels = style.n_dots or DEFAULT_DOTS, reference.source.levels.size
     note = preflight.warning("stipple", n_dots, n_pixels)
     if not is_warm():
         for n_ready, n_kernels in prepared_kernels():

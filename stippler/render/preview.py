@@ -46,10 +46,12 @@ class PreviewUniforms:
     def _bind(self, reference: Reference) -> int:
         """Bind the darkness; return how many pixels of the reference each of its pixels is."""
         most = int(self._ctx.info["GL_MAX_TEXTURE_SIZE"])
-        step: int = -(-max(reference.darkness.shape) // most)
+        levels = reference.levels
+        step: int = -(-max(levels.shape) // most)
         if reference is not self._held:
             self.release()
-            field = np.ascontiguousarray(reference.darkness[::step, ::step], np.float32)
+            every = slice(None, None, step)
+            field = levels.darkness(every, every)
             self._darkness = self._ctx.texture(field.shape[::-1], 1, field, dtype="f4")
             self._darkness.filter = moderngl.NEAREST, moderngl.NEAREST
             self._held = reference

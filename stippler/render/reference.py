@@ -43,8 +43,9 @@ class ReferenceTexture:
         if reference is None:
             return
         most = min(MAX_SIDE_PX, int(self._ctx.info["GL_MAX_TEXTURE_SIZE"]))
-        step = -(-max(reference.darkness.shape) // most)
-        seen = (reference.darkness[::step, ::step] * 255 + 0.5).astype("u1")
+        levels = reference.levels
+        every = slice(None, None, -(-max(levels.shape) // most))
+        seen = (levels.darkness(every, every) * 255 + 0.5).astype("u1")
         texture = self._ctx.texture(seen.shape[::-1], 1, seen.tobytes(), alignment=1)
         texture.build_mipmaps()
         texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR

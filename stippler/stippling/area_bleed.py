@@ -22,6 +22,7 @@ from stippler.stippling.page_raster import (
 )
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.task import STIPPLE, Task
+from stippler.stippling.tessellation import made
 from stippler.stippling.tone import DotRule, rule_for
 
 _STRIP = 2.0  # mean spacings that dots are laid out beyond a line; wider made no rim more even
@@ -54,8 +55,15 @@ def area_ground(task: Task) -> AreaGround:
     borders = replace(borders, cut=beyond.cut)
     if not (borders.bleeding or task.seen_mm):
         return own
-    wide = WideGround(task, own, borders, _STRIP * spacing, beyond)
-    return wide if wide.evens_rim or task.seen_mm else own
+    run_over = NOTHING
+    if borders.open and task.neighbours_mm is not None:
+        width, fewest = BLEED_SPACINGS * spacing, n_dots / outline_mm.area
+        run_over = Beyond.of(task.bleeds_onto_mm, outline_mm, task.neighbours_mm, width, fewest)
+        bare = set(run_over.cut)
+        lines = [line for one in task.bleeds_onto_mm for line in one.line.geoms]
+        borders = borders.cut_at([line for line in lines if line not in bare])
+    wide = WideGround(task, own, borders, _STRIP * spacing, beyond, run_over)
+    return wide if wide.evens_rim or task.seen_mm or run_over.strips else own
 
 
 def _beyond(task: Task, width_mm: float, per_mm2: float) -> Beyond:
@@ -72,12 +80,26 @@ class WideGround(AreaGround):
     ----------
     own : AreaGround
         The area itself; it takes over the rule for dots of which some are trimmed.
+    borders : Borders
+    width_mm : float
+        Of the strip.
+    beyond : Beyond
+        What is seen through other pieces of border.
+    run_over : Beyond
+        Where the strip lies over dots of others: these are not seen, but sizes are solved among
+        them, so that ink is not laid twice.
     """
 
     bleeds = True
 
     def __init__(
-        self, task: Task, own: AreaGround, borders: Borders, width_mm: float, beyond: Beyond
+        self,
+        task: Task,
+        own: AreaGround,
+        borders: Borders,
+        width_mm: float,
+        beyond: Beyond,
+        run_over: Beyond,
     ) -> None:
         reference, style = task.reference, own.style
         assert reference is not None, "an area is drawn from a picture"
@@ -106,7 +128,11 @@ class WideGround(AreaGround):
             assert task.neighbours_mm is not None, "their dots are seen"
             at = task.neighbours_mm[beyond.rows] - np.array(self.origin_mm)
             self.beyond = self.inside(at) / self.raster.pixel_mm
-            own.see(beyond.seen_with(own.on_page_mm), task.neighbours_mm[beyond.rows])
+        if beyond.strips or run_over.strips:
+            assert task.neighbours_mm is not None, "sizes are solved among them"
+            rows = np.union1d(beyond.rows, run_over.rows)
+            around = run_over.seen_with(beyond.seen_with(own.on_page_mm))
+            own.see(around, task.neighbours_mm[rows])
 
     def open_to_dots(self, density: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return dots per square pixel without any where the neighbours' are."""
@@ -166,9 +192,9 @@ class Rim:
         self._lines = NearLines(self.borders.bleeding, _CELLS * self._spacing)
         near = self._lines.nearest(points * side + np.array(ground.origin_mm))
         band = np.flatnonzero(np.isfinite(near.away))
-        n_in_box = round(raster.darkness.size * side**2 / self._spacing**2)
-        *_, (_, radii) = solve_radii(points[band], raster.darkness, raster.rule, n_in_box)
-        self._radius_mm = radii * side
+        others = ground.sized_among
+        cells = ground.cells(np.concatenate((others, points)), len(others) + band)
+        self._radius_mm = solve_radii(made(cells), raster.rule) * side
         return band
 
     def evened(self, ground: AreaGround, points: Floats, give: float) -> Evened:

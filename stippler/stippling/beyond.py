@@ -16,7 +16,15 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiLineString, Polygon
 
 from stippler.drawing.partition import Outline
-from stippler.stippling.border_policies import BorderPolicies, polygons_in, with_slits
+from stippler.drawing.style import BLEED
+from stippler.stippling.border_policies import (
+    BorderPolicies,
+    edges_in,
+    merged,
+    policies_at,
+    polygons_in,
+    with_slits,
+)
 from stippler.stippling.borders import strips_beyond
 
 Floats = NDArray[np.float64]
@@ -116,13 +124,35 @@ class Beyond:
 NOTHING = Beyond([], np.empty(0, np.intp), [], (), [])
 
 
-def seen_of(policies: BorderPolicies, areas: Sequence[int]) -> tuple[Seen, ...]:
-    """Return what some areas see of others."""
+def seen_of(
+    policies: BorderPolicies, areas: Sequence[int], *, bleeds: bool = True
+) -> tuple[Seen, ...]:
+    """Return what some areas see of others; walls that bleed are such to who does not bleed."""
     return tuple(
-        Seen(border.through, border.walls, policies.partition.part_of(k))
+        Seen(
+            border.through, border.closed if bleeds else border.walls, policies.partition.part_of(k)
+        )
         for k, borders in policies.seen_from(areas).items()
         for border in borders
     )
+
+
+def bled_onto(policies: BorderPolicies, areas: Sequence[int]) -> tuple[Seen, ...]:
+    """Return over which pieces of their border some areas bleed onto others."""
+    border, pieces = policies.drawing.border_of(areas[0]), policies.own_of(areas)
+    if border != BLEED and all(policy != BLEED for policy, _ in pieces):
+        return ()
+    part, found = policies.part_of_all(areas), list[Seen]()
+    for k in policies.drawing.areas:
+        other = policies.partition.part_of(k)
+        if k in areas or not shapely.intersects(part, other):
+            continue
+        edges = edges_in(shapely.intersection(part, other))
+        said = policies_at(edges, pieces)
+        bleeds = (said == BLEED) | ((said == "") & (border == BLEED))
+        if bleeds.any():
+            found.append(Seen(merged(edges[bleeds]), MultiLineString(), other))
+    return tuple(found)
 
 
 def _strips_of(one: Seen, outline: Outline, width_mm: float) -> list[Polygon]:

@@ -21,7 +21,7 @@ from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.planar.planar_map import Arc
-from stippler.drawing.style import AUTOMATIC, THROUGH
+from stippler.drawing.style import AUTOMATIC, BLEED, THROUGH
 from stippler.stippling.halftone_area import edges_of
 from stippler.stippling.part_of_area import pattern_of
 
@@ -38,15 +38,26 @@ SLIT_MM = 1e-5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shared:
-    """The border between two areas that see each other through some of it.
+    """The border between two areas of which each may see others.
 
     Attributes
     ----------
-    through, walls : MultiLineString, mm
+    through : MultiLineString, mm
+        Where they see each other.
+    walls : MultiLineString, mm
+        Where they do not.
+    bleeding : MultiLineString, mm
+        What of that bleeds to one of them, or both.
     """
 
     through: MultiLineString
     walls: MultiLineString
+    bleeding: MultiLineString
+
+    @property
+    def closed(self) -> MultiLineString:
+        """Walls that bleed to neither."""
+        return merged(edges_in(shapely.difference(self.walls, self.bleeding)))
 
 
 class BorderPolicies:
@@ -94,7 +105,7 @@ class BorderPolicies:
         )  # fmt: skip
 
     def between(self, a: int, b: int) -> Shared | None:
-        """Return the border between two areas, if there is one that they see through."""
+        """Return the border between two areas that may see others, if they have one."""
         key = (min(a, b), max(a, b))
         if key not in self._between:
             self._between[key] = self._shared(*key) if {a, b} <= set(self.seeing) else None
@@ -109,20 +120,37 @@ class BorderPolicies:
         is_through = policies == THROUGH
         if alike and both:
             is_through |= policies == ""
-        if not is_through.any():
+        if not len(edges):
             return None
-        return Shared(merged(edges[is_through]), merged(edges[~is_through]))
+        bleeds = policies == BLEED
+        if BLEED in (drawing.border_of(a), drawing.border_of(b)):
+            bleeds |= policies == ""
+        return Shared(*(merged(edges[some]) for some in (is_through, ~is_through, bleeds)))
 
     def pairs(self, areas: Collection[int]) -> Iterable[tuple[int, int, Shared]]:
         """Yield which of some areas see each other, and the border between them."""
-        seeing = [k for k in areas if k in self.seeing]
-        if len(seeing) < 2:
-            return
+        for a, b, shared in self._borders(areas):
+            if not shared.through.is_empty:
+                yield a, b, shared
+
+    def _borders(self, areas: Collection[int]) -> Iterable[tuple[int, int, Shared]]:
+        """Yield which of some areas that may see others meet, and the border between them."""
+        if len(areas) > 1:
+            mine = set(areas)
+            yield from (one for one in self._all_borders if {one[0], one[1]} <= mine)
+
+    @cached_property
+    def _all_borders(self) -> list[tuple[int, int, Shared]]:
+        found = list[tuple[int, int, Shared]]()
+        if not self.may_see_through:
+            return found
+        seeing = self.seeing
         parts = [self.partition.part_of(k) for k in seeing]
         first, second = shapely.STRtree(parts).query(parts, predicate="intersects")
         for i, j in sorted(zip(first.tolist(), second.tolist(), strict=True)):
             if i < j and (shared := self.between(seeing[i], seeing[j])) is not None:
-                yield seeing[i], seeing[j], shared
+                found.append((seeing[i], seeing[j], shared))
+        return found
 
     @cached_property
     def _all_pairs(self) -> list[tuple[int, int, Shared]]:
@@ -144,23 +172,36 @@ class BorderPolicies:
         """Whether there are areas of which one may see another."""
         return len(self.seeing) > 1
 
-    def joined(self, areas: Sequence[int]) -> list[tuple[int, ...]]:
+    def joined(self, areas: Sequence[int], *, drawn: bool = True) -> list[tuple[int, ...]]:
         """Return which of some areas are drawn as one, each group where its first area is.
 
-        Those of one style that see each other through some of the border between them.
+        Those of one style that see each other through some of the border between them. Where a
+        border between two bleeds the dots of each run on under those of the other, which is no
+        one outline: those are not `drawn` together.
         """
         style = {k: self.drawing.areas[k].style for k in areas if k in self.drawing.areas}
-        return self.linked(areas, lambda a, b: style[a] == style[b])
+        apart = set[tuple[int, int]]()
+        if drawn:
+            apart = {(a, b) for a, b, one in self._borders(areas) if not one.bleeding.is_empty}
+        return self.linked(areas, lambda a, b: style[a] == style[b], apart)
 
     def linked(
-        self, areas: Sequence[int], count: Callable[[int, int], bool] = lambda a, b: True
+        self,
+        areas: Sequence[int],
+        count: Callable[[int, int], bool] = lambda a, b: True,
+        apart: Collection[tuple[int, int]] = (),
     ) -> list[tuple[int, ...]]:
-        """Return which of some areas see each other, as far as that is to count."""
+        """Return which of some areas see each other, as far as that is to count.
+
+        Of pairs that are to be `apart` no group has both.
+        """
         group = {k: k for k in areas}
         for a, b, _ in self.pairs(areas):
-            if count(a, b) and group[a] != group[b]:
-                old, new = group[b], group[a]
-                group = {j: new if g == old else g for j, g in group.items()}
+            old, new = group[b], group[a]
+            meet = {old, new}
+            if old == new or not count(a, b) or any({group[i], group[j]} == meet for i, j in apart):
+                continue
+            group = {j: new if g == old else g for j, g in group.items()}
         found: dict[int, list[int]] = {}
         for k in areas:
             found.setdefault(group[k], []).append(k)
@@ -171,7 +212,7 @@ class BorderPolicies:
         part = part_of_all(self.partition, areas)
         if len(areas) == 1:
             return part
-        walls = [shared.walls for _, _, shared in self.pairs(areas)]
+        walls = [shared.walls for _, _, shared in self._borders(areas)]
         return with_slits(part, walls)
 
 
@@ -254,7 +295,8 @@ def merged(edges: Edges) -> MultiLineString:
     if not len(edges):
         return MultiLineString()
     lines = shapely.multilinestrings(shapely.linestrings(edges.reshape(-1, 2, 2)))
-    return MultiLineString(shapely.get_parts(shapely.line_merge(lines)).tolist())
+    found: MultiLineString = shapely.multilinestrings(shapely.get_parts(shapely.line_merge(lines)))
+    return found
 
 
 def polygons_in(shape: shapely.Geometry) -> Outline:

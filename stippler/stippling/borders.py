@@ -7,8 +7,8 @@ like style see *through* is no border at all: they are one outline.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -88,13 +88,21 @@ class Borders:
         bleeding = runs_off | at_edge
         return cls(outline, joined(edges[bleeding]), tuple(sides), joined(edges[runs_off]))
 
+    def cut_at(self, lines: Sequence[LineString]) -> Borders:
+        """Return borders that bleed over some lines as before, but cut dots off there."""
+        if not lines:
+            return self
+        edges = edges_in(shapely.multilinestrings(self.bleeding))
+        stays = policies_at(edges, ((BLEED, shapely.multilinestrings(lines)),)) == ""
+        return replace(self, bleeding=joined(edges[stays]), cut=(*self.cut, *lines))
+
     def grown(self, width_mm: float) -> Outline:
         """Return the outline with a strip of this width beyond what bleeds.
 
         Beyond the page's edge it is mirrored, as the picture is. Dots are laid out and relaxed in
         it; `trimmed` takes those of the strip away again.
         """
-        if not self.bleeding:
+        if not (self.bleeding or self.open):
             return self.outline
         length = sum(line.length for line in self.open)
         if length >= (1.0 - _WHOLE) * self.outline.length:

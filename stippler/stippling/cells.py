@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -50,11 +50,17 @@ GATHERED = 32
 FEW = 256
 """Smallest share of a thread where cells are computed one by one, and of a list of them."""
 
+PART, AT_ONCE = 2048, 8
+"""Dots that a thread outlines the cells of, and how many such parts are made before a pause."""
+
 KEEP_BELOW = 0.25
 """Mean move, in spacings, below which stars are worth keeping."""
 
 MOST_TODO = 0.5
 """Share of stars that fail from which on all cells are computed from nothing."""
+
+ELSEWHERE = int(np.iinfo(np.int32).min)
+"""Number of a dot beyond a side whose own cell is not asked for."""
 
 SLACK = 0.5
 """How far, in grid cells, dots may go before they are sorted anew."""
@@ -247,50 +253,70 @@ class Cells:
         out[self.order] = cells
         return out
 
-    def outline(self, weighted: bool) -> tuple[Outlines, Floats]:
-        """Return the outlines of all cells, in the order given, and what `measure` returns.
+    def outline(
+        self, weighted: bool, which: Rows | None = None
+    ) -> Generator[float, None, tuple[Outlines, Rows, Floats]]:
+        """Find the outlines of all cells, in the order given, or of the dots `which` alone.
 
-        The dots beyond sides have the numbers they were given in.
+        Yields the share done. Returns them with the row of each one's dot and, (6, n), what
+        `measure` returns. The dots beyond sides have the numbers they were given in, or are the
+        places in `which` and `ELSEWHERE`.
         """
         self._sort(self._has_stars)
-        cells, row_of_dot = np.zeros((self.n, 6)), np.empty(self.n, np.int32)
+        number, row_of_dot = self.order, np.empty(self.n, np.int32)
         row_of_dot[self.order] = np.arange(self.n, dtype=np.int32)
-        found: dict[int, Outlines] = {}
-        n_sides = np.zeros(self.n, np.int32)
+        rows = row_of_dot if which is None else row_of_dot[which]
+        n = len(rows)
+        if which is not None:
+            number = np.full(self.n, ELSEWHERE, np.int32)
+            number[rows] = np.arange(n, dtype=np.int32)
+        n_parts = max(n // PART, min(n // FEW, AT_ONCE), 1)
+        ends = np.arange(n_parts + 1) * n // n_parts
+        room, used = 8 * np.diff(ends) + 64, np.zeros(n_parts, np.int64)
+        n_sides, cells, measured = np.zeros(n, np.int32), np.zeros((self.n, 6)), np.empty((6, n))
         new = self._scratch_moves()
         dots = self._dots._replace(fixed=np.empty(0, np.bool_))
 
-        def part(start: int, stop: int) -> None:
-            room, cap = 8 * (stop - start) + 64, CORNER_CAP
+        def outline_part(k: int) -> None:
+            mine, place = slice(ends[k], ends[k + 1]), slice(last[k] - room[k], last[k])
+            out = Outlines(corner[place], beyond[place], following[place], n_sides, used[k : k + 1])
+            cap = CORNER_CAP
             while True:
-                mine = Outlines(
-                    np.empty((room, 2)), np.empty(room, np.int32), np.empty(room, np.int32),
-                    n_sides, np.zeros(1, np.int64),
-                )  # fmt: skip
+                used[k] = 0
                 relax_dots(
-                    start, stop, cap, row_of_dot, False, dots, self._table, self.grid.border,
-                    self._field_for(weighted), self.over, new, cells, _NO_STARS, mine, LLOYD,
+                    mine.start, mine.stop, cap, rows, False, dots, self._table, self.grid.border,
+                    self._field_for(weighted), self.over, new, cells, _NO_STARS, out, LLOYD,
                 )  # fmt: skip
-                if (new.kind[row_of_dot[start:stop]] == TOO_MANY_CORNERS).any():
-                    cap *= 16
-                elif mine.used[0] > room:
-                    room = int(mine.used[0])
-                else:
+                if not (new.kind[rows[mine]] == TOO_MANY_CORNERS).any():
                     break
-            found[start] = mine
+                cap *= 16
+            other = out.beyond[: used[k]]
+            is_dot = other >= 0
+            other[is_dot] = number[other[is_dot]]
+            measured[:, mine] = cells[rows[mine]].T
 
-        parallel_for(part, self.n, grain=FEW, chunks=8)
-        parts = [found[start] for start in sorted(found)]
-        joined = [
-            np.concatenate([getattr(p, name)[: p.used[0]] for p in parts] or [empty])
-            for name, empty in (("corner", np.empty((0, 2))), ("beyond", _NO_ROWS),
-                                ("following", _NO_ROWS))
-        ]  # fmt: skip
-        is_dot = joined[1] >= 0
-        joined[1][is_dot] = self.order[joined[1][is_dot]]
-        corner, beyond, following = joined
-        used = np.zeros(1, np.int64)
-        return Outlines(corner, beyond, following, n_sides, used), cells[row_of_dot]
+        while True:
+            last = np.cumsum(room)
+            corner, beyond, following = _room_for_sides(int(last[-1]))
+            for first in range(0, n_parts, AT_ONCE):
+
+                def parts(start: int, stop: int, first: int = first) -> None:
+                    for k in range(first + start, first + stop):
+                        outline_part(k)
+
+                parallel_for(parts, min(AT_ONCE, n_parts - first), grain=1, chunks=AT_ONCE)
+                yield min((first + AT_ONCE) / n_parts, 1.0)
+            if (used <= room).all():
+                break
+            room = used.copy()
+        n_used = 0
+        for start, count in zip(last - room, used, strict=True):
+            source, target = slice(start, start + count), slice(n_used, n_used + count)
+            corner[target], beyond[target] = corner[source], beyond[source]
+            following[target] = following[source] + n_used
+            n_used += int(count)
+        found = corner[:n_used], beyond[:n_used], following[:n_used]
+        return Outlines(*found, n_sides, np.array([n_used])), rows, measured
 
     def _field_for(self, weighted: bool) -> Field:
         return self._field if weighted else NO_FIELD
@@ -480,3 +506,7 @@ class Cells:
                 bound_crowds, len(self._crowd), self._crowd, self._tree_of_cell, self._cell_start,
                 self.xs, self.ys, self._node, self._arc, grain=1, chunks=16,
             )  # fmt: skip
+
+
+def _room_for_sides(n: int) -> tuple[Floats, Rows, Rows]:
+    return np.empty((n, 2)), np.empty(n, np.int32), np.empty(n, np.int32)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.tone import LEAST_PRINTED_MM
+from stippler.stippling.window import Tones
 
 _RADIUS_MM, _ON_MM2 = 0.20, 13_000.0  # mean radius, on a page 130 mm wide
 _MEAN_TO_LEAST = 1.35  # radii of a drawing whose dots differ by 1:2
@@ -27,12 +28,12 @@ _LEAST_CELL_PX = 2.0  # pictures of few pixels are no plain ones
 _FINE = 4  # blocks a side of a dot's cell; what is finer is grain
 
 
-def default_number(reference: Reference, page_mm2: float | None = None) -> int:
+def default_number(reference: Reference | Tones, page_mm2: float | None = None) -> int:
     """Return how many dots suit a reference and its page.
 
     Parameters
     ----------
-    reference : Reference
+    reference : Reference or Tones
     page_mm2 : float, optional
         Of the page, where the reference is that of a part.
 
@@ -43,20 +44,21 @@ def default_number(reference: Reference, page_mm2: float | None = None) -> int:
         200 would do.
     """
     area = reference.width_mm * reference.height_mm
-    ink = float(reference.darkness.mean(dtype=np.float64)) * area
+    darkness = reference.darkness
+    ink = float(darkness.mean(dtype=np.float64)) * area
     radius = _RADIUS_MM * ((page_mm2 or area) / _ON_MM2) ** 0.25
     usual = ink / (math.pi * radius**2)
     if usual < 1.0:
         return _LEAST
     cell_px = math.sqrt(area / usual) / reference.pixel_mm
-    detail = _loss(reference.darkness, cell_px) / _USUAL_LOSS
+    detail = _loss(darkness, cell_px) / _USUAL_LOSS
     wanted = usual * min(max(detail, _FEWEST), _MOST)
     least_mean = 0.5 * LEAST_PRINTED_MM * _MEAN_TO_LEAST
     printable = ink / (math.pi * least_mean**2)
     return _rounded(min(max(min(wanted, printable), _LEAST), _LIMIT))
 
 
-def with_number(style: Style, reference: Reference, page_mm2: float | None = None) -> Style:
+def with_number(style: Style, reference: Reference | Tones, page_mm2: float | None = None) -> Style:
     """Give a style that asks for neither a number nor sizes the number that suits a reference."""
     if style.n_dots is not None or style.size_range_mm is not None:
         return style

@@ -15,15 +15,16 @@ from stippler.drawing.style import MAX_DOTS, WALL, Style
 from stippler.kernels.halftone.scan_order import outside_polygon
 from stippler.stippling.compartments import Compartments, Shape
 from stippler.stippling.default_number import with_number
+from stippler.stippling.density import DensityField
 from stippler.stippling.field_sums import Weights
 from stippler.stippling.halftone import DROPPED
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.postprocess import at_edge, even_rim
 from stippler.stippling.style_tone import curves_of, toned
-from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import DotRule
-from stippler.stippling.window import Window
+from stippler.stippling.window import Tones, Window
 
 if TYPE_CHECKING:
     from stippler.drawing.partition import Outline
@@ -78,6 +79,10 @@ class Ground(Protocol):
         """Return the darkness as a weight, in mm from the corner."""
         ...
 
+    def tone_field(self) -> Weights:
+        """Return the darkness that sizes are to meet, in mm from the corner."""
+        ...
+
     def on_page(self, at_mm: Floats) -> Floats:
         """Return where places in mm from the corner lie on the page, read-only."""
         ...
@@ -86,8 +91,8 @@ class Ground(Protocol):
         """Return the compartments, in pixels, and that of each dot; None is the page."""
         ...
 
-    def cells(self, points: Floats) -> Tessellation | None:
-        """Return the dots' cells, in pixels, with the ink they ask for; None is the page."""
+    def cells(self, points: Floats) -> Making:
+        """Compute the dots' cells, in pixels, with the ink they ask for as mass."""
         ...
 
     @property
@@ -154,6 +159,10 @@ class PageGround:
         """Return the darkness as a weight, mirrored in the bleed."""
         return self.raster.ink_field()
 
+    def tone_field(self) -> Weights:
+        """Return the darkness by the raster's own pixels."""
+        return DensityField(self.raster.darkness, self.raster.pixel_mm)
+
     def on_page(self, at_mm: Floats) -> Floats:
         """Return the places as they are."""
         return at_mm
@@ -162,9 +171,9 @@ class PageGround:
         """Return None: dots at the edge slide along it."""
         return None
 
-    def cells(self, points: Floats) -> Tessellation | None:
-        """Return None: the cells are the page's."""
-        return None
+    def cells(self, points: Floats) -> Making:
+        """Compute the dots' cells on the page."""
+        return self.raster.cells(points)
 
     @property
     def bleeds(self) -> bool:
@@ -241,7 +250,7 @@ class AreaGround:
         masked = np.repeat(np.repeat(window.darkness, k, 0), k, 1)
         pixel_mm = window.pixel_mm / k
         outside_polygon(edges_of(self._outline) / pixel_mm, masked)
-        local = Reference(masked, pixel_mm * masked.shape[1])
+        local = Tones(masked, pixel_mm * masked.shape[1])
         page_mm2 = reference.width_mm * reference.height_mm
         self.style = with_number(style, local, page_mm2)
         self.raster = raster_for(local, self.style, bleeds=False)
@@ -289,6 +298,10 @@ class AreaGround:
         """Return the darkness as a weight; cells are cut at the border, it is not."""
         return self._field
 
+    def tone_field(self) -> Weights:
+        """Return the darkness of the picture."""
+        return self._field
+
     def on_page(self, at_mm: Floats) -> Floats:
         """Return where places in mm from the corner lie on the page: within the outline there."""
         at: Floats = at_mm + np.array(self.origin_mm)
@@ -302,12 +315,15 @@ class AreaGround:
         """Return the parts of the area, and that of each dot."""
         return self._parts, self._parts.find(points, None)
 
-    def cells(self, points: Floats) -> Tessellation | None:
-        """Return the dots' cells, cut at the border, or with those that are seen across it."""
+    def cells(self, points: Floats, which: NDArray[np.intp] | None = None) -> Making:
+        """Compute the dots' cells, cut at the border, or with those that are seen across it.
+
+        Or those of the dots `which` alone.
+        """
         side = self.raster.pixel_mm
         (w, h), (x, y) = self._field.pixel_mm, self._field.origin_mm
         field = replace(self._field, pixel_mm=(w / side, h / side), origin_mm=(x / side, y / side))
-        return Tessellation.of(points, list(self._sized_in.polygons), None, field)
+        return Tessellation.making(points, list(self._sized_in.polygons), None, field, which)
 
     @property
     def after_trim(self) -> Ground:
@@ -329,7 +345,7 @@ class AreaGround:
         return self.rim.evened(self, points, give)
 
 
-def raster_for(reference: Reference, style: Style, *, bleeds: bool = True) -> PageRaster:
+def raster_for(reference: Reference | Tones, style: Style, *, bleeds: bool = True) -> PageRaster:
     """Prepare the raster that a style lays its dots out on."""
     by_region = style.sizes == "regions"
     raster = PageRaster.of(

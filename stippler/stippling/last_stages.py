@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from stippler.stippling.postprocess import part_close
 from stippler.stippling.progress import TONED, Step
 from stippler.stippling.radii import Sizes
 from stippler.stippling.stretched import InkOfShapes, is_stretched, shapes_of
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import Shortfall, shortfall, too_small_to_print
 
 _PARTED, _LAST = 40, 200  # thousandths of the work on the tone before sizes are solved
@@ -106,17 +107,57 @@ def radii(draft: Draft, watched: bool) -> Iterator[Step]:
         there = np.concatenate((draft.ground.sized_among, there))
     n = len(there)
     points = np.concatenate((there, draft.points)) if n else draft.points
-    cells = draft.ground.cells(points) if len(points) else None
-    raster = draft.raster
-    sizes = Sizes(points, raster.darkness, raster.rule, tessellation=cells)
-    if len(points):
-        for share in sizes.prepare():
-            yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
-        for share in sizes.solve():
-            yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
-    if is_long and len(points) and raster.rule.varies:
+    cells = yield from _told(draft.ground.cells(points))
+    sizes = Sizes(cells, draft.raster.rule)
+    for share in sizes.solve():
+        yield Step(TONED, round(1000 - (1000 - _LAST) * 0.2 * (1.0 - share)), 1000)
+    if is_long and len(points) and draft.raster.rule.varies:
         _for_long_dots(draft, points, sizes)
     draft.radii = sizes.radii[n:]
+    if draft.task.areas_mm and len(draft.points) and not is_long:
+        draft.radii = _by_area(draft, sizes)
+
+
+def _by_area(draft: Draft, sizes: Sizes) -> Floats:
+    """Return sizes by which each area of the task meets the tone, and not only all together."""
+    from stippler.stippling.area_tone import sizes_of_areas
+
+    task, ground, pixel = draft.task, draft.ground, draft.raster.pixel_mm
+    corner = np.array(ground.origin_mm)
+    n_there = len(sizes.radii) - len(draft.points)  # the last of these stand in the area itself
+    first, n = len(draft.stand), len(draft.stand) + len(draft.points)
+    position = [draft.stand * pixel, draft.points * pixel]
+    radius = [np.empty(0), sizes.radii[n_there:] * pixel]
+    if task.standing is not None:
+        radius[0] = task.standing.radius_mm.astype(np.float64)
+    if task.neighbours_mm is not None and task.neighbours_radius_mm is not None:
+        position.append(task.neighbours_mm - corner)
+        radius.append(task.neighbours_radius_mm.astype(np.float64))
+    at, radius_mm = np.concatenate(position), np.concatenate(radius)
+    moved = np.zeros(len(at), np.bool_)
+    moved[first:n] = True
+
+    def ink(radius_mm: Floats) -> Floats:
+        in_px = np.concatenate((sizes.radii[: n_there - first], radius_mm[:n] / pixel))
+        laid = np.zeros(len(at))
+        laid[:n] = sizes.ink(in_px)[n_there - first :] * pixel**2
+        return laid
+
+    areas = [shapely.transform(area, lambda xy: xy - corner) for area in task.areas_mm]
+    limits = draft.raster.rule.radius_min * pixel, draft.raster.rule.radius_max * pixel
+    found = sizes_of_areas(areas, at, radius_mm, ink, moved, limits, ground.tone_field())
+    changed = found[moved] != radius_mm[moved]
+    return np.where(changed, found[moved] / pixel, sizes.radii[n_there:])
+
+
+def _told(making: Making) -> Generator[Step, None, Tessellation]:
+    """Compute cells, and tell how far that is."""
+    while True:
+        try:
+            share = next(making)
+        except StopIteration as end:
+            return end.value  # type: ignore[no-any-return]
+        yield Step(TONED, round(_LAST + (1000 - _LAST) * 0.8 * share), 1000)
 
 
 def _for_long_dots(draft: Draft, points: Floats, sizes: Sizes) -> None:

@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from stippler.drawing.reference import Reference
@@ -20,10 +21,12 @@ from stippler.errors import ParameterError
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.darkness_levels import look_up_levels
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
+from stippler.stippling.compartments import Shape
 from stippler.stippling.density import DensityField
 from stippler.stippling.halftone import CELLS_PER_DOT, ink_box
+from stippler.stippling.tessellation import Making, Tessellation
 from stippler.stippling.tone import DotRule, rule_for
-from stippler.stippling.window import Window
+from stippler.stippling.window import Tones, Window
 
 BLEED_SPACINGS = 3.0  # mean spacings
 LEAST_WIDTH = 4.0  # mean spacings; a narrower page would be nearly all rim
@@ -65,7 +68,7 @@ class PageRaster:
     @classmethod
     def of(
         cls,
-        reference: Reference,
+        reference: Reference | Tones,
         n_dots: int | None,
         size_range_mm: tuple[float, float] | None,
         bleeds: bool,
@@ -178,6 +181,30 @@ class PageRaster:
         parallel_for(part, len(points), grain=_BAND, chunks=_BANDS)
         return radii
 
+    def cells(
+        self,
+        points: NDArray[np.float64],
+        which: NDArray[np.integer] | None = None,
+        depth: float = math.inf,
+    ) -> Making:
+        """Compute the cells of dots on the page, in pixels, with the ink they ask for as mass.
+
+        Parameters
+        ----------
+        points : (n, 2) float64, pixels
+        which : (k,) int, optional
+            Only of these.
+        depth : float, pixels
+            How far from the page's edge the dots lie at most: their cells go no farther.
+        """
+        (h, w), k = self.darkness.shape, self.divided
+        page: Shape = np.array([(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)])
+        if 2.0 * depth < min(w, h):
+            page = shapely.box(0.0, 0.0, w, h) - shapely.box(depth, depth, w - depth, h - depth)
+        at = np.clip(points, 0.0, (w, h))
+        ink = DensityField(self.darkness[::k, ::k], float(k))  # pixels as they came weigh the same
+        return Tessellation.making(at, page, None, ink, which)
+
     def wanted_at(
         self, points: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -271,7 +298,7 @@ def _border(darkness: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.concatenate((darkness[0], darkness[-1], darkness[:, 0], darkness[:, -1]))
 
 
-def _number_for(reference: Reference, size_range_mm: tuple[float, float] | None) -> int:
+def _number_for(reference: Reference | Tones, size_range_mm: tuple[float, float] | None) -> int:
     """Return how many dots of these sizes a reference takes, about."""
     if size_range_mm is None:
         return FEWEST_WITH_BLEED

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.levels import N_LEVELS, Curve, table_of
+from stippler.drawing.levels import N_LEVELS, Curve
 from stippler.drawing.reference import Reference
 from stippler.errors import ParameterError
 
@@ -77,9 +77,9 @@ class PictureField:
         bleed_mm : float
             How far around the page the picture goes on, mirrored, as far as its shorter side.
         """
-        tables = np.stack([table_of(reference.adjustment.apply, *steps) for steps in curves])
+        tables = np.stack([reference.table(*steps) for steps in curves])
         of_shape = None if table_of_shape is None else np.asarray(table_of_shape, np.int64)
         side = reference.pixel_mm
-        levels = reference.source.levels
+        levels = reference.source.levels.of_pixel
         bleed = min(math.ceil(bleed_mm / side), *levels.shape)
         return cls(levels, tables, (side, side), table_of_shape=of_shape, bleed=bleed)

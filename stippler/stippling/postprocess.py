@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.cells.close_pairs import find_close, push_apart
+from stippler.kernels.cells.grid import sort_by_grid_cell
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.edge_ink import even_rim as even_along
 from stippler.stippling.compartments import Compartments
 from stippler.stippling.page_raster import PageRaster
-from stippler.stippling.radii import solve_radii, sorted_by_place
+from stippler.stippling.radii import solve_radii
+from stippler.stippling.tessellation import made
 
 _APART = 0.5  # of the distance to the seventh neighbour
 _ENOUGH = 1.0  # of the spacing that the density asks for
@@ -47,7 +49,7 @@ def part_close(
     points = np.array(points)
     if n < 2:
         return points
-    order, cell_start, frame = sorted_by_place(points, raster.darkness, n)
+    order, cell_start, frame = sorted_by_place(points, raster.darkness)
     xy = points[order]  # few dots move, and not far: the grid of the first round serves all
     radii, density = raster.wanted_at(xy)
     enough = _ENOUGH / np.sqrt(np.maximum(density, 1e-12))
@@ -88,10 +90,13 @@ def even_rim(points: NDArray[np.float64], raster: PageRaster, give: float) -> ND
     """
     points = np.array(points)
     darkness = raster.darkness
-    band = np.flatnonzero(_inwards(points, raster) < _CELLS * _spacing(points, raster))
+    inwards, width = _inwards(points, raster), _CELLS * _spacing(points, raster)
+    strip = np.flatnonzero(inwards < 2.0 * width)
+    within = np.flatnonzero(inwards[strip] < width)
+    band = strip[within]
     if not len(band):
         return points
-    *_, (_, radii) = solve_radii(points[band], darkness, raster.rule, len(points))
+    radii = solve_radii(made(raster.cells(points[strip], within, 2.0 * width)), raster.rule)
     line = _LINE * raster.rule.radius_min
     for axis, far, edge in (
         (1, False, darkness[0]),
@@ -118,6 +123,25 @@ def _inwards(points: NDArray[np.float64], raster: PageRaster) -> NDArray[np.floa
     size = np.array(raster.darkness.shape[::-1], np.float64)
     distance: NDArray[np.float64] = np.minimum(points, size - points).min(axis=1)
     return distance
+
+
+def sorted_by_place(
+    points: NDArray[np.float64], darkness: NDArray[np.float32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+    """Sort dots into a uniform grid; return the order, each grid cell's start, and the frame.
+
+    The frame holds width and height of the page, side of a grid cell, columns and rows.
+    """
+    n, (h, w) = len(points), darkness.shape
+    inked = max(float(np.count_nonzero(darkness[::4, ::4])) * 16.0, 0.05 * h * w)
+    side = max(math.sqrt(1.2 * min(inked, h * w) / n), max(h, w) / 30_000)
+    columns, rows = max(1, math.ceil(w / side)), max(1, math.ceil(h / side))
+    column = np.clip((points[:, 0] / side).astype(np.int32), 0, columns - 1)
+    row = np.clip((points[:, 1] / side).astype(np.int32), 0, rows - 1)
+    cell_start = np.zeros(columns * rows + 1, np.int32)
+    order = np.empty(n, np.int32)
+    sort_by_grid_cell(row * np.int32(columns) + column, cell_start, order)
+    return order, cell_start, np.array([w, h, side, columns, rows], np.float64)
 
 
 def _spacing(points: NDArray[np.float64], raster: PageRaster) -> float:

@@ -20,7 +20,7 @@ from stippler.stippling.density import Density, DensityField
 from stippler.stippling.field_sums import Weights
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.spacing import Rules, Wanted, rules_after
-from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tessellation import Making, Tessellation, made
 
 __all__ = ["DensityField", "PictureField", "Relaxation", "RunReport", "StepReport", "relax"]
 
@@ -238,7 +238,11 @@ class Relaxation:
 
     def tessellation(self, weighted: bool = True) -> Tessellation:
         """Return all cells, clipped, in the order given; masses by the density if `weighted`."""
-        return Tessellation.of_cells(self._cells, weighted)
+        return made(self.outlining(weighted))
+
+    def outlining(self, weighted: bool = True, which: NDArray[np.integer] | None = None) -> Making:
+        """Compute all cells, or those of the dots `which`, (k,) int, a part after the other."""
+        return Tessellation.of_cells(self._cells, weighted, which)
 
     def energy(self) -> float:
         """Return the sum over cells of the second moment of area about the dot, mm⁴."""

@@ -28,7 +28,7 @@ from stippler.stippling.radii import solve_radii
 from stippler.stippling.relax import AT_REST, Relaxation, StepReport
 from stippler.stippling.spacing import AT_LAST, TO_INK, Wanted
 from stippler.stippling.task import Standing, Task
-from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tessellation import Tessellation, made
 from stippler.stippling.tone import DotRule, ink_for
 from stippler.stippling.transport import with_long_waves_gone
 
@@ -331,13 +331,13 @@ class _Sheet:
     def _solved(self, position_mm: NDArray[np.float64]) -> NDArray[np.float64]:
         pixel = self.raster.pixel_mm
         inside = np.clip(position_mm, 0.0, self.raster.size_mm) / pixel
-        cells = None
-        if self._within is not None:
+        if self._within is None:
+            cells = made(self.raster.cells(inside))
+        else:
             parts, of_dot = self._within
             field = DensityField(self.raster.darkness, 1.0)
             cells = Tessellation.of(inside, parts, of_dot, field)
-        *_, (_, radii) = solve_radii(inside, self.raster.darkness, self.rule, tessellation=cells)
-        return radii * pixel
+        return solve_radii(cells, self.rule) * pixel
 
     def _size_by_darkness(
         self, position_mm: NDArray[np.float64], sizes: NDArray[np.float64]

@@ -62,7 +62,11 @@ def views_of(
         spacing = math.sqrt(outline.area / max(n_dots, 1))
         near = np.flatnonzero(np.isin(area, list(around)))
         beyond = Beyond.of(
-            seen_of(policies, group), outline, at[near], _WIDTH * spacing, n_dots / outline.area
+            seen_of(policies, group, bleeds=False),
+            outline,
+            at[near],
+            _WIDTH * spacing,
+            n_dots / outline.area,
         )
         if len(group) > 1 or beyond.strips:
             outline = beyond.seen_with(outline)

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.drawing.drawing import Drawing
-from stippler.drawing.levels import table_of
 from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
@@ -57,15 +56,12 @@ def number_of_some(
     style = counted(style, whole.area)
     if style.n_dots is None:
         return style
-    size_mm = (reference.width_mm, reference.height_mm)
     side = math.sqrt(whole.area) / _FINEST
     owner, dark = _sampled(policies.partition, reference, whole.bounds, side, style)
-    rims = []
-    for part, ids in ((whole, group), (own, areas)):
-        lines = Borders.of(part, style.border, size_mm, policies.own_of(ids)).bleeding
-        places = [along_line(one, max(round(one.length / side), 1)) for one in lines]
-        at = np.concatenate([np.empty((0, 2)), *places])
-        rims.append(_seen_as(style, reference, at))
+    rims = [
+        np.concatenate([_rim_of(policies, ids, reference, side, style) for ids in groups])
+        for groups in (policies.joined(group), [areas])
+    ]
     mine, theirs = dark[np.isin(owner, areas)], dark[np.isin(owner, group)]
     sizes = style.size_range_mm
     in_px = None if sizes is None else (sizes[0] / side, sizes[1] / side)
@@ -73,6 +69,21 @@ def number_of_some(
     n = float(rule.density(mine).sum()) + float(rule.per_border(rims[1]).sum())
     n *= own.area / max(len(mine) * side * side, 1e-12)
     return replace(style, n_dots=max(round(n), 1))
+
+
+def _rim_of(
+    policies: BorderPolicies,
+    areas: tuple[int, ...],
+    reference: Reference,
+    side_mm: float,
+    style: Style,
+) -> NDArray[np.float32]:
+    """Return how dark it is along what bleeds of areas that are drawn as one."""
+    size_mm = (reference.width_mm, reference.height_mm)
+    part, border = policies.part_of_all(areas), policies.drawing.border_of(areas[0])
+    lines = Borders.of(part, border, size_mm, policies.own_of(areas)).bleeding
+    places = [along_line(one, max(round(one.length / side_mm), 1)) for one in lines]
+    return _seen_as(style, reference, np.concatenate([np.empty((0, 2)), *places]))
 
 
 def _sampled(
@@ -92,12 +103,11 @@ def _sampled(
 
 def _seen_as(style: Style, reference: Reference, at_mm: NDArray[np.float64]) -> NDArray[np.float32]:
     """Return how dark a style sees places of the page."""
-    levels = reference.source.levels
+    levels = reference.source.levels.of_pixel
     column, row = np.clip(
         (at_mm / reference.pixel_mm).astype(np.intp).T, 0, np.array(levels.shape[::-1])[:, None] - 1
     )
-    table = table_of(reference.adjustment.apply, *curves_of(style))
-    dark: NDArray[np.float32] = table[levels[row, column]]
+    dark: NDArray[np.float32] = reference.table(*curves_of(style))[levels[row, column]]
     return dark
 
 
@@ -113,9 +123,9 @@ def _ink(
     at = (np.arange(n) + 0.5) / n
     x, y = np.meshgrid(x0 + (x1 - x0) * at, y0 + (y1 - y0) * at)
     owner = partition.area_at(np.column_stack((x.ravel(), y.ravel())))
-    levels = reference.source.darkness
+    levels = reference.source.levels.of_pixel
     rows = np.clip((y / reference.pixel_mm).astype(np.intp), 0, levels.shape[0] - 1)
     columns = np.clip((x / reference.pixel_mm).astype(np.intp), 0, levels.shape[1] - 1)
-    ink = reference.adjustment.apply(np.ascontiguousarray(levels[rows, columns])).ravel()
+    ink = reference.values[levels[rows, columns]].ravel()
     cell = (x1 - x0) * (y1 - y0) / n**2
     return float(ink[np.isin(owner, areas)].sum(dtype=np.float64)) * cell

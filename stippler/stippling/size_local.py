@@ -16,8 +16,6 @@ from stippler.stippling.relax_local import NO_STARS, LocalRelaxation
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int32]
 
-_MOST_SIDES = 64  # of a cell whose outline bounds its dot's ink
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sized:
@@ -46,19 +44,15 @@ class LocalSizes(LocalRelaxation):
         """Find the radii of dots, each number once, within a range."""
         slots = self._slot_of_dot[np.asarray(dots, np.int32)]
         outlines, cells = self._outlines(slots)
-        n, n_sides = len(slots), outlines.n_sides
-        last = np.cumsum(n_sides)
-        dot = np.repeat(np.arange(n), n_sides)
-        place = np.arange(len(dot)) - (last - n_sides)[dot]
-        closes = outlines.following[: len(dot)] <= place
-        fits = (n_sides <= _MOST_SIDES) & (np.bincount(dot[closes], minlength=n) == 1)
-        corners = np.empty((n, min(int(n_sides.max(initial=0)), _MOST_SIDES), 2), np.float32)
-        side = fits[dot]
-        corners[dot[side], place[side]] = outlines.corner[: len(dot)][side]
-        n_corners = np.where(fits, n_sides, 0).astype(np.uint8)
+        n = len(slots)
+        start = np.zeros(n + 1, np.int32)
+        np.cumsum(outlines.n_sides, out=start[1:])
+        corner, following = outlines.corner[: start[-1]], outlines.following[: start[-1]]
+        for array in (start, corner, following):
+            array.flags.writeable = False  # kernels compile for one kind
         asked, radius, left = np.ascontiguousarray(cells[slots, 0]), np.empty(n), np.empty(n)
         before = np.full(n, -1.0)
-        fit_radii(0, n, corners, n_corners, asked, before, low_mm, high_mm, radius, left)
+        fit_radii(0, n, start, corner, following, asked, before, low_mm, high_mm, radius, left)
         radius[~(asked > 0.0)] = np.nan
         return Sized(radius, np.sqrt(cells[slots, 5]))
 

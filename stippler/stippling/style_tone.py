@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from stippler.drawing.levels import Curve, table_of
-from stippler.drawing.reference import Reference
+from stippler.drawing.levels import Curve
+from stippler.drawing.reference import Picture, Reference
 from stippler.drawing.style import Style
 from stippler.drawing.tone_curve import ToneCurve
 from stippler.kernels.halftone.scan_order import outside_polygon
@@ -34,8 +34,8 @@ def toned(reference: Reference, style: Style) -> Reference:
     curves = curves_of(style)
     if not curves:
         return reference
-    table = table_of(reference.adjustment.apply, *curves)
-    return Reference(table[reference.source.levels], reference.width_mm)
+    seen = reference.source.levels.seen_through(reference.adjustment.apply, *curves)
+    return Reference.of(Picture(seen), reference.width_mm)
 
 
 def toned_by_area(reference: Reference, areas: Mapping[int, tuple[Outline, Style]]) -> Reference:
@@ -45,7 +45,7 @@ def toned_by_area(reference: Reference, areas: Mapping[int, tuple[Outline, Style
         return reference
     from stippler.stippling.halftone_area import edges_of
 
-    darkness = np.array(reference.darkness)
+    levels, darkness = reference.source.levels, np.array(reference.darkness)
     pixel, (h, w) = reference.pixel_mm, darkness.shape
     for part, style in changed.values():
         low, high = np.array(part.bounds).reshape(2, 2) / pixel
@@ -54,7 +54,6 @@ def toned_by_area(reference: Reference, areas: Mapping[int, tuple[Outline, Style
         inside = np.ones((y1 - y0, x1 - x0), np.float32)
         local = shapely.transform(part, lambda xy, at=(x0, y0): xy / pixel - at)
         outside_polygon(edges_of(local), inside)
-        table = table_of(reference.adjustment.apply, *curves_of(style))
-        seen = table[reference.source.levels[y0:y1, x0:x1]]
+        seen = reference.table(*curves_of(style))[levels.of_pixel[y0:y1, x0:x1]]
         darkness[y0:y1, x0:x1] = np.where(inside > 0.0, seen, darkness[y0:y1, x0:x1])
     return Reference(darkness, reference.width_mm)

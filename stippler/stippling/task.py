@@ -104,12 +104,18 @@ class Task:
         How many to take; None is as many as the style says.
     neighbours_mm : (m, 2) float64 or None
         Dots beyond the border, from which new ones keep their distance.
+    neighbours_radius_mm : (m,) float32 or None
+        Theirs.
     pieces_mm : tuple of (policy, MultiLineString)
         Pieces of the border that are to dots something else than the style says.
     seen_mm : tuple of Seen
         Through which pieces of the border which neighbours' dots are seen.
+    bleeds_onto_mm : tuple of Seen
+        Over which pieces of the border dots run off onto which neighbours.
     lines : MetLines or None
         What the standing dots line up on while they are moved.
+    areas_mm : tuple of shapely Polygon or MultiPolygon
+        Areas that are drawn as one, or one that sees others: the tone of each is to be met.
     """
 
     style: Style
@@ -120,6 +126,9 @@ class Task:
     n_done: int = 0
     steps: int | None = None
     neighbours_mm: NDArray[np.float64] | None = None
+    neighbours_radius_mm: NDArray[np.float32] | None = None
     pieces_mm: tuple[tuple[str, MultiLineString], ...] = ()
     seen_mm: tuple[Seen, ...] = ()
+    bleeds_onto_mm: tuple[Seen, ...] = ()
     lines: MetLines | None = None
+    areas_mm: tuple[Polygon | MultiPolygon, ...] = ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,8 +17,8 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.run import Holding
 from stippler.drawing.style import Style
 from stippler.errors import GeometryError, ParameterError
-from stippler.stippling.beyond import seen_of
-from stippler.stippling.border_policies import BorderPolicies
+from stippler.stippling.beyond import bled_onto, seen_of
+from stippler.stippling.border_policies import BorderPolicies, polygons_in
 from stippler.stippling.part_of_area import FEW, part_for_dots, parts_met
 from stippler.stippling.progress import Progress
 from stippler.stippling.relax_views import View, views_of
@@ -183,12 +183,20 @@ class AreaTask:
 
     def of_each(self, made: Progress) -> tuple[tuple[int, Progress], ...]:
         """Return the dots of each area; what all fall short of is told with the first."""
+        return tuple(self._of(self.areas, made))
+
+    def of_first(self, made: Progress) -> tuple[int, Progress]:
+        """Return the first area, and its dots."""
+        ((area, own),) = self._of(self.areas[:1], made)
+        return area, own
+
+    def _of(self, areas: Sequence[int], made: Progress) -> Iterator[tuple[int, Progress]]:
         if len(self.areas) == 1:
-            return ((self.areas[0], made),)
+            yield self.areas[0], made
+            return
         owner = self.partition.area_at(made.position_mm)
         owner[~np.isin(owner, self.areas)] = self.areas[0]
-        found = []
-        for k in self.areas:
+        for k in areas:
             mine = owner == k
             position, radius = made.position_mm[mine], made.radius_mm[mine]
             position.flags.writeable = radius.flags.writeable = False
@@ -198,8 +206,7 @@ class AreaTask:
                 held = Holding(held.curve[mine], held.along_mm[mine])
             one = replace(made, position_mm=position, radius_mm=radius, shortfall=lack,
                           holding=held)  # fmt: skip
-            found.append((k, one))
-        return tuple(found)
+            yield k, one
 
 
 def stippling(
@@ -270,10 +277,20 @@ def stippling(
     is_page &= not pieces
     parts = () if is_page else (cut,)
     lines = lines_met(drawing, dots.take(fixed)) if drawing.lines else None
+    seen = () if cut is not part else seen
+    onto = bled_onto(policies, areas) if cut is part else ()
+    of_each = _of_each(partition, areas, cut) if seen or onto or len(areas) > 1 else ()
     task = Task(style, reference, parts_mm=parts, standing=standing, lines=lines,
-                neighbours_mm=dots.position_mm[others], pieces_mm=pieces,
-                seen_mm=() if cut is not part else seen)  # fmt: skip
+                neighbours_mm=dots.position_mm[others],
+                neighbours_radius_mm=dots.radius_mm[others], pieces_mm=pieces,
+                seen_mm=seen, bleeds_onto_mm=onto, areas_mm=of_each)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], partition)
+
+
+def _of_each(partition: Partition, areas: Sequence[int], cut: Outline) -> tuple[Outline, ...]:
+    """Return what each of some areas has of the place that their dots may lie in."""
+    owned = [polygons_in(shapely.intersection(partition.part_of(k), cut)) for k in areas]
+    return tuple(part for part in owned if not part.is_empty)
 
 
 def box_around(part: Outline) -> tuple[float, float, float, float]:
@@ -288,6 +305,7 @@ def _known(drawing: Drawing) -> str:
 
 
 def _drawn_as_one(policies: BorderPolicies, areas: tuple[int, ...]) -> tuple[int, ...]:
-    """Return all areas that would be drawn as one with some, which come first."""
+    """Return all areas that would be drawn as one with some but for bleeds; these come first."""
     everyone = [*areas, *(k for k in policies.seeing if k not in areas)]
-    return next(group for group in policies.joined(everyone) if areas[0] in group)
+    groups = policies.joined(everyone, drawn=False)
+    return next(group for group in groups if areas[0] in group)

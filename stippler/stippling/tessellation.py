@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import shapely
@@ -39,7 +39,7 @@ class Tessellation:
     beyond : (m,) int32
         The dot beyond a side; or, below 0, ``-1 - e`` for border edge e of `compartments`. A dot
         beyond need not have this cell's dot among its own: where the border cuts a cell apart,
-        the piece without its dot is nobody's.
+        the piece without its dot is nobody's. `ELSEWHERE` is a dot whose cell is not among these.
     mass : (n,) float64
         Integral of the density; the area without one.
     centroid : (n, 2) float64, mm
@@ -69,27 +69,42 @@ class Tessellation:
         polygon: Shape | Sequence[Shape] | ArrayLike,
         compartment_of_dot: ArrayLike | None = None,
         density: Weights | None = None,
+        which: NDArray[np.integer] | None = None,
     ) -> Tessellation:
-        """Compute the cells of dots; parameters and errors as for `Relaxation`."""
-        from stippler.stippling.relax import Relaxation
+        """Compute the cells of dots; parameters and errors as for `Relaxation`.
 
-        engine = Relaxation(points, polygon, None, compartment_of_dot, density)
-        return engine.tessellation()
+        With `which`, (k,) int, those of some dots alone, in that order: as they are among all.
+        """
+        return made(cls.making(points, polygon, compartment_of_dot, density, which))
 
     @classmethod
-    def of_cells(cls, cells: Cells, weighted: bool = True) -> Tessellation:
-        """Read the cells of an engine, in the order that its dots were given in."""
-        outlines, measured = cells.outline(weighted)
-        position = cells.xy
-        owner = np.empty(cells.n, np.int32)
-        owner[cells.order] = cells.compartment_of_dot
-        start = np.zeros(cells.n + 1, np.int32)
+    def making(
+        cls,
+        points: ArrayLike,
+        polygon: Shape | Sequence[Shape] | ArrayLike,
+        compartment_of_dot: ArrayLike | None = None,
+        density: Weights | None = None,
+        which: NDArray[np.integer] | None = None,
+    ) -> Making:
+        """Compute the cells as `of` does, a part after the other."""
+        from stippler.stippling.relax import Relaxation
+
+        return Relaxation(points, polygon, None, compartment_of_dot, density).outlining(which=which)
+
+    @classmethod
+    def of_cells(
+        cls, cells: Cells, weighted: bool = True, which: NDArray[np.integer] | None = None
+    ) -> Making:
+        """Read the cells of an engine, in the order that its dots were given in, or of some."""
+        some = None if which is None else np.asarray(which, np.int32)
+        outlines, row, measured = yield from cells.outline(weighted, some)
+        position = np.column_stack([cells.xs[row], cells.ys[row]])
+        start = np.zeros(len(row) + 1, np.int32)
         np.cumsum(outlines.n_sides, out=start[1:])
-        following = outlines.following + np.repeat(start[:-1], outlines.n_sides)
+        owner = cells.compartment_of_dot[row]
         arrays = (
-            position, start, outlines.corner, following, outlines.beyond,
-            np.ascontiguousarray(measured[:, 0]), position + measured[:, 1:3],
-            np.ascontiguousarray(measured[:, 3]), np.ascontiguousarray(measured[:, 4]),
+            position, start, outlines.corner, outlines.following, outlines.beyond, measured[0],
+            position + measured[1:3].T, measured[3], measured[4],
         )  # fmt: skip
         for array in (*arrays, owner):
             array.flags.writeable = False
@@ -134,3 +149,16 @@ class Tessellation:
         """Return dot i's cell as a polygon, mm."""
         rings = self.rings(i)
         return shapely.Polygon(rings[0], rings[1:]) if rings else shapely.Polygon()
+
+
+Making: TypeAlias = Generator[float, None, Tessellation]
+"""A tessellation that is being computed: yields the share done, and returns it."""
+
+
+def made(making: Making) -> Tessellation:
+    """Return a tessellation once it is computed."""
+    while True:
+        try:
+            next(making)
+        except StopIteration as end:
+            return end.value  # type: ignore[no-any-return]

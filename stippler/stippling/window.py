@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stippler.drawing.levels import Curve, table_of
-from stippler.drawing.reference import Reference
+from stippler.drawing.levels import Curve, Levels
+from stippler.drawing.reference import Picture, Reference
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.tone.blocks import average_blocks
 
@@ -21,6 +21,36 @@ _DOTS_PER_PIXEL = 0.25  # pixels of a reference that is coarser are divided
 
 Box = tuple[float, float, float, float]
 BoxPx = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tones:
+    """Darkness worked out for one job, which no picture keeps: of an area, white beside it.
+
+    Attributes
+    ----------
+    darkness : (h, w) float32, read-only
+        0 (white, weight exactly 0) to 1 (black).
+    width_mm : float
+    """
+
+    darkness: NDArray[np.float32]
+    width_mm: float
+
+    def __post_init__(self) -> None:
+        self.darkness.flags.writeable = False
+
+    @property
+    def pixel_mm(self) -> float:
+        """Side of a pixel on the page."""
+        columns: int = self.darkness.shape[1]
+        return self.width_mm / columns
+
+    @property
+    def height_mm(self) -> float:
+        """Height of the field on the page."""
+        rows: int = self.darkness.shape[0]
+        return self.pixel_mm * rows
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,12 +75,12 @@ class Window:
     scale: float
 
     @classmethod
-    def of_page(cls, reference: Reference, n_dots: int) -> Window:
+    def of_page(cls, reference: Reference | Tones, n_dots: int) -> Window:
         """Read all of a reference for so many dots.
 
         A page of few dots is read more finely than these alone ask for.
         """
-        h, w = reference.source.darkness.shape
+        h, w = _shape_of(reference)
         if n_dots > _DOTS_PER_PIXEL * h * w:
             return _divided(reference, n_dots)
         return _read(reference, (0, 0, w, h), n_dots, _MIN_PIXELS, ())
@@ -73,7 +103,7 @@ class Window:
         bleed_mm : float
             How far beyond the page the picture goes on, mirrored, where the box does.
         """
-        h, w = reference.source.darkness.shape
+        h, w = reference.source.levels.shape
         side = reference.pixel_mm
         x0, x1 = _touched(box_mm[0] / side, box_mm[2] / side, w)
         y0, y1 = _touched(box_mm[1] / side, box_mm[3] / side, h)
@@ -98,7 +128,7 @@ def _bled(inner: Window, reference: Reference, box_mm: Box, bleed_mm: float) -> 
     return Window(darkness, inner.pixel_mm, (x, y), inner.scale)
 
 
-def _divided(reference: Reference, n_dots: int) -> Window:
+def _divided(reference: Reference | Tones, n_dots: int) -> Window:
     """Divide pixels larger than dots."""
     plain = reference.darkness
     k = math.ceil(math.sqrt(n_dots / (_DOTS_PER_PIXEL * plain.size)))
@@ -108,7 +138,7 @@ def _divided(reference: Reference, n_dots: int) -> Window:
 
 
 def _read(
-    reference: Reference, box: BoxPx, n_dots: int, least: int, curves: tuple[Curve, ...]
+    reference: Reference | Tones, box: BoxPx, n_dots: int, least: int, curves: tuple[Curve, ...]
 ) -> Window:
     """Average blocks of pixels finer than dots can show."""
     x0, y0, x1, y1 = box
@@ -122,27 +152,35 @@ def _read(
 
 
 def _averaged(
-    reference: Reference, box: BoxPx, k: int, curves: tuple[Curve, ...]
+    reference: Reference | Tones, box: BoxPx, k: int, curves: tuple[Curve, ...]
 ) -> NDArray[np.float32]:
     if k < 2:
         return _looked_up(reference, box, curves)
+    if isinstance(reference, Tones):
+        picture = Picture(Levels.rounded(reference.darkness))
+        reference = Reference.of(picture, reference.width_mm)
     x0, y0, x1, y1 = box
     out = np.empty((-(-(y1 - y0) // k), -(-(x1 - x0) // k)), np.float32)
-    table = table_of(reference.adjustment.apply, *curves)
-    parallel_for(
-        average_blocks, len(out), reference.source.levels, table, y0, x0, y1, x1, k, out, grain=8
-    )
+    table, levels = reference.table(*curves), reference.source.levels.of_pixel
+    parallel_for(average_blocks, len(out), levels, table, y0, x0, y1, x1, k, out, grain=8)
     return out
 
 
-def _looked_up(reference: Reference, box: BoxPx, curves: tuple[Curve, ...]) -> NDArray[np.float32]:
+def _looked_up(
+    reference: Reference | Tones, box: BoxPx, curves: tuple[Curve, ...]
+) -> NDArray[np.float32]:
     """Return pixels as they are; those of the whole page without curves to the bit."""
     x0, y0, x1, y1 = box
-    if not curves and box == (0, 0, *reference.source.darkness.shape[::-1]):
+    if isinstance(reference, Tones) or (not curves and box == (0, 0, *_shape_of(reference)[::-1])):
         return reference.darkness
-    part = reference.source.levels[y0:y1, x0:x1]
-    found: NDArray[np.float32] = table_of(reference.adjustment.apply, *curves)[part]
-    return found
+    seen = reference.source.levels.seen_through(reference.adjustment.apply, *curves)
+    return seen.darkness(slice(y0, y1), slice(x0, x1))
+
+
+def _shape_of(reference: Reference | Tones) -> tuple[int, ...]:
+    if isinstance(reference, Tones):
+        return reference.darkness.shape
+    return reference.source.levels.shape
 
 
 def _touched(low: float, high: float, n: int) -> tuple[int, int]:

@@ -89,7 +89,7 @@ def adjusted() -> Drawing:
     drawing = dots()
     darkness = np.linspace(0, 1, 16, dtype=np.float32).reshape(4, 4)
     adjustment = Adjustment(0.1, -0.2, 1.5, True, 0.05, 0.9)
-    drawing.reference = Reference.of(Picture(darkness, "linear", ""), 40.0, adjustment)
+    drawing.reference = Reference.of(Picture.of(darkness), 40.0, adjustment)
     return drawing
 
 

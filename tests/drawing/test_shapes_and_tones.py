@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stippler.drawing.dots import Dots
-from stippler.drawing.levels import N_LEVELS, levels_of
+from stippler.drawing.levels import N_LEVELS, Levels
 from stippler.drawing.page import Page
 from stippler.drawing.pens import PENS, pen_named
 from stippler.drawing.shape_change import (
@@ -135,7 +135,7 @@ def test_what_a_change_does_to_round_smooth_dots_is_known():
 @given(st.lists(st.floats(0.0, 1.0, width=32), min_size=1, max_size=40))
 def test_levels_are_the_nearest_and_only_white_is_none(values):
     dark = np.array(values, np.float32)
-    found = levels_of(dark).astype(np.float64)
+    found = Levels.rounded(dark[None]).of_pixel[0].astype(np.float64)
     assert np.abs(found - dark.astype(np.float64) * (N_LEVELS - 1)).max() <= 1.0
     middle = dark * np.float32(N_LEVELS - 1)
     plain = (middle > 0.5) & (middle % 1 != 0.5)
@@ -145,7 +145,7 @@ def test_levels_are_the_nearest_and_only_white_is_none(values):
 
 def test_the_ends_of_levels():
     dark = np.array([0, 1e-12, 0.5 / 65535, 1 / 65535, 1.5001 / 65535, 1], np.float32)
-    assert levels_of(dark).tolist() == [0, 1, 1, 1, 2, 65535]
+    assert Levels.rounded(dark[None]).of_pixel.tolist() == [[0, 1, 1, 1, 2, 65535]]
 
 
 def test_pages_are_of_sizes_that_there_are():

@@ -80,7 +80,7 @@ SHAPE = '<rect width="9" height="9"/></svg>'
 def hostile(secret):
     """Return files that ask for more, by name."""
     members, png = members_of(dots()), secret.read_bytes()
-    bare = Picture(np.zeros((3, 4), np.float32), "linear", str(secret))
+    bare = Picture.of(np.zeros((3, 4), np.float32), "linear", str(secret))
     elsewhere = json.loads(members["document.json"])
     elsewhere["pictures"] = {"p": {"name": "", "tone": "linear", "file": str(secret)}}
     frozen = {

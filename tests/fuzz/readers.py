@@ -21,6 +21,7 @@ from stippler.drawing import records
 from stippler.drawing.document import Document
 from stippler.drawing.dots import Dots
 from stippler.drawing.drawing import Drawing, Page
+from stippler.drawing.levels import Levels
 from stippler.drawing.reference import Picture
 from stippler.errors import DrawingFileError, StipplerError
 from stippler.files.native import arrays, container, drawing_file, edit_log, journal, structure
@@ -139,7 +140,7 @@ def read_small(data: bytes, name: str, tone: str) -> Picture:
     """Stand in for the reader of pictures, which is fuzzed by itself."""
     if not data or len(name) > 100:
         raise StipplerError("is no picture", name)
-    return Picture(np.full((2, 2), 0.5, np.float32), tone, name, data)
+    return Picture(Levels.of(np.full((2, 2), 0.5, np.float32)), tone, name, data)
 
 
 def _save_and_open(drawing: Drawing) -> None:
@@ -173,7 +174,7 @@ def _picture(data: bytes) -> None:
     before, picture.MAX_PIXELS = picture.MAX_PIXELS, MOST_PIXELS
     try:
         found = picture.picture_of_bytes(data, "here.png", "linear")
-        assert found.darkness.size <= MOST_PIXELS
+        assert found.levels.size <= MOST_PIXELS
     finally:
         picture.MAX_PIXELS = before
 

@@ -8,10 +8,12 @@ from hypothesis import strategies as st
 from shapely.geometry import MultiPoint, Point, Polygon, box
 
 from stippler.analysis.tone_error import draw_ink
-from stippler.kernels.tone.cell_ink import MAX_CORNERS
 from stippler.kernels.tone.pixel_owner import onto_ink, sample
 from stippler.kernels.tone.radii import fit_radii
-from stippler.stippling.radii import _Cells, sorted_by_place
+from stippler.stippling.density import DensityField
+from stippler.stippling.radii import Sizes
+from stippler.stippling.tessellation import Tessellation
+from stippler.stippling.tone import DotRule
 
 
 def frozen(field):
@@ -21,11 +23,9 @@ def frozen(field):
 
 
 def cells_of(points, darkness):
-    order, start, frame = sorted_by_place(points, darkness, len(points))
-    cells = _Cells(len(points), MAX_CORNERS)
-    for _ in cells.build(points[order], start, frame, darkness):
-        pass
-    return cells, order
+    h, w = darkness.shape
+    page = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)]
+    return Tessellation.of(points, page, None, DensityField(darkness, 1.0))
 
 
 def voronoi(points, w, h):
@@ -52,23 +52,20 @@ def test_cells_and_their_ink_agree_with_shapely(seed, n, kind):
         points[:, 1] = 11.3
     points = np.unique(points, axis=0)
     darkness = frozen(rng.random((h, w)) * (rng.random((h, w)) < 0.7))
-    cells, order = cells_of(points, darkness)
+    cells = cells_of(points, darkness)
     expected = voronoi(points, w, h)
-    for k, i in enumerate(order):
-        m = cells.n_corners[k]
-        if m == 0:  # too many corners to keep
-            assert len(expected[i].exterior.coords) - 1 > MAX_CORNERS - 4
-            continue
-        found = Polygon(cells.corners[k, :m].astype(float) + points[i])
-        assert found.area == pytest.approx(expected[i].area, rel=1e-5, abs=1e-4)
-        assert found.symmetric_difference(expected[i]).area < 1e-3
+    for i in range(len(points)):
+        found = cells.polygon(i)
+        assert found.area == pytest.approx(expected[i].area, rel=1e-9, abs=1e-9)
+        assert cells.area[i] == pytest.approx(expected[i].area, rel=1e-9, abs=1e-9)
+        assert found.symmetric_difference(expected[i]).area < 1e-8
         asked = 0.0
         x0, y0, x1, y1 = (int(v) for v in expected[i].bounds)
         for y in range(y0, min(y1 + 1, h)):
             for x in range(x0, min(x1 + 1, w)):
                 if darkness[y, x] > 0:
                     asked += darkness[y, x] * expected[i].intersection(box(x, y, x + 1, y + 1)).area
-        assert cells.asked[k] == pytest.approx(asked, rel=1e-6, abs=1e-6)
+        assert cells.mass[i] == pytest.approx(asked, rel=1e-6, abs=1e-6)
 
 
 @given(
@@ -84,21 +81,20 @@ def test_a_radius_gives_the_ink_asked_for(angles, size, share):
     cell = Polygon(corners)
     if cell.area < 1e-3:
         return
-    store = np.zeros((1, MAX_CORNERS, 2), np.float32)
-    store[0, : len(corners)] = corners
+    first, following = np.array([0, len(corners)], np.int32), np.roll(np.arange(len(corners)), -1)
+    cells = first, corners, following.astype(np.int32)
     asked = np.array([min(share, 0.999) * cell.area])
     radius, left = np.empty(1), np.empty(1)
-    counts = np.array([len(corners)], np.uint8)
     before = np.full(1, -1.0)
-    fit_radii(0, 1, store, counts, asked, before, 1e-3, 10.0, radius, left)
+    fit_radii(0, 1, *cells, asked, before, 1e-3, 10.0, radius, left)
     ink = Point(0, 0).buffer(radius[0], quad_segs=256).intersection(cell).area
     assert ink == pytest.approx(asked[0], rel=2e-4, abs=1e-5)
     assert abs(left[0]) <= 1e-5
     low, high = 0.9 * radius[0], 0.95 * radius[0]
-    fit_radii(0, 1, store, counts, asked, before, low, high, radius, left)
+    fit_radii(0, 1, *cells, asked, before, low, high, radius, left)
     assert radius[0] == high
     assert left[0] > 0
-    fit_radii(0, 1, store, counts, asked, before, 1.1 * high, 1.2 * high, radius, left)
+    fit_radii(0, 1, *cells, asked, before, 1.1 * high, 1.2 * high, radius, left)
     assert radius[0] == pytest.approx(1.1 * high)
     assert left[0] < 0
 
@@ -109,10 +105,8 @@ def test_the_union_of_equal_discs_is_the_sum_over_their_cells(seed, r):
     rng = np.random.default_rng(seed)
     w = h = 16
     points = rng.random((60, 2)) * (w, h)
-    cells, _ = cells_of(points, frozen(np.ones((h, w))))
+    cells = Sizes(cells_of(points, frozen(np.ones((h, w)))), DotRule(r, r))
     cells.fit(r, r)
-    if (cells.n_corners == 0).any():
-        return
     union = shapely.union_all(shapely.buffer(shapely.points(points), r, quad_segs=64))
     true = union.intersection(box(0, 0, w, h)).area
     assert (cells.asked - cells.left).sum() == pytest.approx(true, rel=1e-3)
@@ -123,7 +117,7 @@ def test_the_union_of_equal_discs_is_the_sum_over_their_cells(seed, r):
 def test_passing_ink_on_loses_none_and_helps(seed, low, ratio):
     rng = np.random.default_rng(seed)
     darkness = frozen(rng.random((20, 20)))
-    cells, _ = cells_of(rng.random((60, 2)) * 20, darkness)
+    cells = Sizes(cells_of(rng.random((60, 2)) * 20, darkness), DotRule(low, low * ratio))
     cells.fit(low, low * ratio)
     asked, missed = cells.asked.sum(), np.abs(cells.left).sum()
     cells.pass_on(low, low * ratio)

@@ -111,7 +111,7 @@ def test_pieces_are_scaled_with_the_drawing():
         there = affinity.scale(line, 0.731, 0.731, origin=(0, 0))
         assert there.hausdorff_distance(after[policy]) < 3e-4
     partition = Partition(scaled.outlines())
-    assert BorderPolicies(scaled, partition).joined([0, 1]) == [(0, 1)]
+    assert BorderPolicies(scaled, partition).linked([0, 1]) == [(0, 1)]
     np.testing.assert_array_equal(partition.area_at(scaled.dots.position_mm), scaled.dots.area)
 
 
@@ -181,6 +181,48 @@ def test_who_is_drawn_as_one():
     assert groups() == [(0, 1)]
     again = parted("wall", "wall", "through")
     assert BorderPolicies(again.drawing, again.partition).joined([0, 1]) == [(0,), (1,)]
+
+
+def along(document):
+    """Return how uneven ink is along the line's lower half, and how many dots lie beside it."""
+    at, radius = document.dots.position_mm, document.dots.radius_mm.astype(float)
+    lines = [LineString([(x, 21), (x, 39)]) for x in (24.95, 25.05)]
+    return max(unevenness(line, at, radius) for line in lines), beside(at, 21, 39)
+
+
+def test_a_piece_that_bleeds_does_so_between_areas_that_see_through_beside_it():
+    """As where each area is drawn by itself: dots of both run off the line, none line up."""
+    for high in ("", "wall", "bleed"):
+        document = parted("through", high)
+        process_now(document, [0, 1])
+        dots = document.dots
+        at, radius = dots.position_mm, dots.radius_mm.astype(float)
+        np.testing.assert_array_equal(document.partition.area_at(at), dots.area)
+        assert beside(at, 1, 19) == pytest.approx(1.0, abs=0.3)
+        for part in (box(0, 0, 25, H), box(25, 0, W, H)):
+            assert inked(at, radius, part) == pytest.approx(asked(part), rel=0.005)
+        assert len(at) == pytest.approx(3000, rel=0.005)
+        off, near = along(document)
+        if high == "bleed":
+            assert off < 0.2
+            assert near > 0.6
+            for one in (1, 0):
+                process_now(document, [one])
+                assert along(document)[0] < 0.2
+        else:
+            assert off > 0.2
+            assert near < 0.25
+
+
+def test_areas_between_which_a_border_bleeds_are_not_drawn_as_one():
+    def groups(*said, drawn=True):
+        document = parted(*said)
+        return BorderPolicies(document.drawing, document.partition).joined([0, 1], drawn=drawn)
+
+    assert groups("through", "") == groups("through", "wall") == [(0, 1)]
+    assert groups("through", "bleed") == groups("through", "", "bleed") == [(0,), (1,)]
+    assert groups("through", "bleed", drawn=False) == [(0, 1)]
+    assert groups("bleed", "", "through") == [(0,), (1,)]
 
 
 @settings(max_examples=40 * EXAMPLES, deadline=None)

@@ -12,6 +12,7 @@ from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.postprocess import even_rim, part_close
 from stippler.stippling.radii import solve_radii
 from stippler.stippling.stipple import stages
+from stippler.stippling.tessellation import made
 
 
 def sheet_of(darkness, n):
@@ -68,7 +69,7 @@ def test_the_ink_along_the_edge_meets_the_tone():
     raster, points = relaxed(np.tile(x, (400, 1)), 3000)
 
     def error(dots):
-        *_, (_, radii) = solve_radii(dots, raster.darkness, raster.rule)
+        radii = solve_radii(made(raster.cells(dots)), raster.rule)
         ink = draw_ink(2 * dots, 2 * radii, (800, 800), zoom=4)  # in rows of half a pixel
         spacing = 800 / np.sqrt(3000)
         dark = np.repeat(raster.darkness[0], 2)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
 from stippler.drawing.adjustment import Adjustment
-from stippler.drawing.levels import N_LEVELS, levels_of, table_of
+from stippler.drawing.levels import N_LEVELS, Levels, table_of
 from stippler.drawing.reference import Reference
 from stippler.errors import ParameterError
 from stippler.kernels.cells.field import COLUMNS, ROWS
@@ -31,7 +31,7 @@ def picture(seed=1, shape=(120, 160), width=20.0):
 
 def test_levels_are_near_and_only_white_is_white():
     values = np.concatenate([np.linspace(0, 1, 5000), [1e-30, 1e-7]]).astype(np.float32)[None]
-    levels = levels_of(values)
+    levels = Levels.rounded(values).of_pixel
     assert np.abs(levels / 65535.0 - values)[values > 1e-5].max() <= 0.51 / 65535
     assert ((levels == 0) == (values == 0)).all()
     assert levels[0, 4999] == N_LEVELS - 1

@@ -9,8 +9,10 @@ from scipy.ndimage import gaussian_filter
 from stippler.analysis.tone_error import draw_ink
 from stippler.drawing.reference import Reference
 from stippler.kernels.machine.pool import n_threads, set_threads
+from stippler.stippling.density import DensityField
 from stippler.stippling.page_raster import PageRaster
 from stippler.stippling.radii import solve_radii
+from stippler.stippling.tessellation import Tessellation
 from stippler.stippling.tone import DotRule, ink_for, rule_for, shortfall
 
 NO_RIM = np.empty(0, np.float32)
@@ -23,9 +25,10 @@ def frozen(field):
 
 
 def solved(points, darkness, low, high):
-    *_, (share, radii) = solve_radii(points, darkness, DotRule(low, high))
-    assert share == 1.0
-    return radii
+    h, w = darkness.shape
+    page = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)]
+    cells = Tessellation.of(points, page, None, DensityField(darkness, 1.0))
+    return solve_radii(cells, DotRule(low, high))
 
 
 def hexagons(w, h, spacing):

@@ -51,7 +51,7 @@ def test_ink_is_what_each_area_asks_for(shapes, n, darkness):
     engine = Relaxation(points, shapes, compartment_of_dot=owner, density=density)
     engine.run(30)
     cells = engine.tessellation()
-    *_, (_, radii) = solve_radii(cells.position, field, DotRule(0.1, 60.0), tessellation=cells)
+    radii = solve_radii(cells, DotRule(0.1, 60.0))
     asked = np.bincount(owner, cells.mass)
     for c in range(len(shapes)):
         assert laid(cells, radii, c) == pytest.approx(asked[c], rel=0.005)
@@ -72,7 +72,7 @@ def test_bricks_of_twelve_dots_get_what_they_ask_for():
     engine = Relaxation(points, bricks, compartment_of_dot=owner, density=DensityField(field, 1.0))
     engine.run(20)
     cells = engine.tessellation()
-    *_, (_, radii) = solve_radii(cells.position, field, DotRule(0.1, 60.0), tessellation=cells)
+    radii = solve_radii(cells, DotRule(0.1, 60.0))
     share = [laid(cells, radii, k) / (0.3 * b.area) for k, b in enumerate(bricks)]
     assert len(bricks) > 150
     assert np.abs(np.array(share) - 1.0).max() < 0.005
@@ -82,7 +82,7 @@ def test_a_lone_dot_around_a_hole_and_cells_of_many_sides():
     shape = Point(200, 200).buffer(100, quad_segs=40).difference(box(240, 190, 260, 210))
     field = np.full((SIZE, SIZE), 0.3, np.float32)
     cells = Tessellation.of([[200, 200.0], [215, 200]], shape, density=DensityField(field, 1.0))
-    *_, (_, radii) = solve_radii(cells.position, field, DotRule(0.1, 200.0), tessellation=cells)
+    radii = solve_radii(cells, DotRule(0.1, 200.0))
     assert laid(cells, radii, 0) == pytest.approx(0.3 * shape.area, rel=0.01)
 
 

@@ -144,9 +144,9 @@ def _write_pictures(drawing: Drawing, members: dict[str, bytes]) -> dict[str, An
     else:
         about |= {
             "darkness": f"pictures/{picture.digest}.f4",
-            "shape": list(picture.darkness.shape),
+            "shape": list(picture.levels.shape),
         }
-        members[about["darkness"]] = arrays.to_bytes(picture.darkness)
+        members[about["darkness"]] = arrays.to_bytes(picture.levels.darkness())
     listed[picture.digest] = about
     return listed
 
@@ -282,7 +282,7 @@ def _read_pictures(
                 found[digest] = read_picture(members[member], name, tone)
             else:
                 darkness = arrays.from_bytes(members[member], "f4", about.get("shape"), place)
-                found[digest] = Picture(darkness, tone, name)
+                found[digest] = Picture.of(darkness, tone, name, digest)
         except StipplerError as error:
             raise DrawingFileError(f"cannot be read ({error})", place, _DO) from None
     return found

@@ -73,7 +73,7 @@ def of_picture(picture: Picture) -> bytes:
     head = {"what": _PICTURE, "digest": picture.digest, "name": picture.name, "tone": picture.tone}
     if picture.data is not None:
         return arrays.pack(head, {"data": np.frombuffer(picture.data, np.uint8)})
-    return arrays.pack(head, {"darkness": picture.darkness})
+    return arrays.pack(head, {"darkness": picture.levels.darkness()})
 
 
 def replay(
@@ -223,7 +223,7 @@ def entry_of(
         if data is not None:
             picture = read_picture(data.tobytes(), name, tone)
         else:
-            picture = Picture(found["darkness"], tone, name)
+            picture = Picture.of(found["darkness"], tone, name, str(head.get("digest")))
         pictures[str(head.get("digest"))] = picture
         return None
     if not isinstance(what, str):

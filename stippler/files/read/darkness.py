@@ -1,4 +1,4 @@
-"""From samples to a field of darkness over white paper.
+"""From samples to levels of darkness over white paper.
 
 Darkness is 1 − luminance, over white where the picture is transparent. Luminance is *linear*
 (what reaches the eye, so ink that covers that share of the paper reflects as much light as the
@@ -9,13 +9,15 @@ as an illustrator would draw it (*illustration*, see `stippler.drawing.tone_curv
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.levels import N_LEVELS, Levels, gathered, table_of
 from stippler.drawing.picture_values import TONES
-from stippler.drawing.tone_curve import illustration
+from stippler.drawing.tone_curve import curve_for, illustration, tones_in
 from stippler.errors import ParameterError, PictureError
 from stippler.files.read.light import (
     DEEPEST,
@@ -43,66 +45,84 @@ def check_tone(tone: str) -> None:
         )
 
 
-def darkness_of_pixels(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[str, ...]]:
+def levels_of_pixels(pixels: Pixels, tone: str) -> tuple[Levels, tuple[str, ...]]:
     """Turn pixels into darkness, upright, averaged to `MAX_FIELD_PIXELS`; and what to tell."""
-    if (few := _few_values(pixels, tone)) is not None:
+    if (few := _grey_values(pixels, tone)) is not None:
         return few
-    if tone == "illustration":
-        dark, told = darkness_of_pixels(pixels, "perceptual")
-        return illustration(dark).apply(dark), told
+    drawn = tone == "illustration"
+    if drawn:
+        tone = "perceptual"
     width, height = pixels.size
     k = min(max(math.ceil(math.sqrt(width * height / MAX_FIELD_PIXELS)), 1), width, height)
-    out = np.empty((height // k, width // k), np.float32)
+    shape = height // k, width // k
     light = light_of(pixels)
-    note = (light.note,) if light.note else ()
+    told = pixels.notes + ((light.note,) if light.note else ())
     if tone == "perceptual" and len(light.tables) == 1:
         light = light.perceptual()
-    rows = max(_BAND_PIXELS // (width * k), 1)
-    for top in range(0, len(out), rows):
-        bottom = min(top + rows, len(out))
-        band = pixels.rows(top * k, bottom * k)[:, : out.shape[1] * k]
+    bands = _bands(pixels, light, tone, k)
+    of_pixel, values = _drawn(bands, shape) if drawn else gathered(bands, shape)
+    return Levels(_oriented(of_pixel, pixels.orientation), values), told
+
+
+def _bands(pixels: Pixels, light: Light, tone: str, k: int) -> Iterator[NDArray[np.float32]]:
+    """Give the darkness of pixels, or the means of blocks of k x k, some rows at a time."""
+    width, height = pixels.size
+    rows, columns = height // k, width // k
+    at_once = max(_BAND_PIXELS // (width * k), 1)
+    for top in range(0, rows, at_once):
+        bottom = min(top + at_once, rows)
+        band = pixels.rows(top * k, bottom * k)[:, : columns * k]
         dark = _band(band.reshape(*band.shape[:2], -1), pixels, light, tone)
-        if k > 1:
-            dark = dark.reshape(bottom - top, k, -1, k).mean(axis=(1, 3))
-        out[top:bottom] = dark
-    return _oriented(out, pixels.orientation), pixels.notes + note
+        yield dark if k == 1 else dark.reshape(bottom - top, k, -1, k).mean(axis=(1, 3))
 
 
-def _few_values(pixels: Pixels, tone: str) -> tuple[NDArray[np.float32], tuple[str, ...]] | None:
-    """Do the same for grey of 8 bits by a table of its values, where that is all of it; else None.
+def _drawn(
+    bands: Iterable[NDArray[np.float32]], shape: tuple[int, int]
+) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+    """Return levels and their values as an illustrator draws them.
 
-    Each pixel then is looked up once, whatever becomes of its value.
+    The curve has as many steps as there are levels, so that its table waits for all the tones.
+    """
+    of_pixel, n_done, tones = np.empty(shape, np.uint16), 0, []
+    for band in bands:
+        tones.append(tones_in(band.ravel()))
+        of_pixel[n_done : n_done + len(band)] = np.rint(band * np.float32(N_LEVELS - 1))
+        n_done += len(band)
+    return of_pixel, curve_for(np.sum(tones, axis=0)).apply(table_of())
+
+
+def _grey_values(pixels: Pixels, tone: str) -> tuple[Levels, tuple[str, ...]] | None:
+    """Do the same for grey of whole numbers, where that is all of it; else None.
+
+    Its samples are its levels: only what they come to is worked out.
     """
     width, height = pixels.size
-    is_grey = pixels.colour == "grey" and pixels.white == 255 and not pixels.alpha
+    is_grey = pixels.colour == "grey" and 1 < pixels.white < N_LEVELS and not pixels.alpha
     if not is_grey or width * height > MAX_FIELD_PIXELS:
         return None
     samples = pixels.rows(0, height).reshape(height, width)
     light = light_of(pixels)
-    if samples.dtype != np.uint8 or len(light.tables) != 1:
+    if samples.dtype.kind != "u" or len(light.tables) != 1:
+        return None
+    if pixels.white < np.iinfo(samples.dtype).max and int(samples.max()) > pixels.white:
         return None
     note = (light.note,) if light.note else ()
     if tone != "linear":
         light = light.perceptual()
-    each = np.arange(256, dtype=np.uint8)
+    each = np.arange(pixels.white + 1, dtype=samples.dtype)
     table = _band(each[None, :, None], pixels, light, tone)
     if tone == "illustration":
-        table = illustration(table[0], _counts(samples)).apply(table)
-    dark = np.empty(samples.shape, np.float32)
-
-    def part(start: int, stop: int) -> None:
-        dark[start:stop] = table[0, samples[start:stop]]
-
-    parallel_for(part, height, grain=32, chunks=16)
-    return _oriented(dark, pixels.orientation), pixels.notes + note
+        table = illustration(table[0], _counts(samples, pixels.white)).apply(table)
+    levels = np.array(_oriented(samples, pixels.orientation), np.uint16)
+    return Levels(levels, table[0]), pixels.notes + note
 
 
-def _counts(samples: NDArray[np.uint8]) -> NDArray[np.int64]:
+def _counts(samples: NDArray[np.unsignedinteger], white: int) -> NDArray[np.int64]:
     """Return how many pixels there are of each value."""
     found: list[NDArray[np.int64]] = []
 
     def part(start: int, stop: int) -> None:
-        found.append(np.bincount(samples[start:stop].ravel(), minlength=256))
+        found.append(np.bincount(samples[start:stop].ravel(), minlength=white + 1))
 
     parallel_for(part, len(samples), grain=32, chunks=16)
     total: NDArray[np.int64] = np.sum(found, axis=0)
@@ -213,7 +233,7 @@ def _encoded_table() -> NDArray[np.float32]:
 _PERCEPTUAL = _encoded_table()
 
 
-def _oriented(field: NDArray[np.float32], orientation: int) -> NDArray[np.float32]:
+def _oriented(field: NDArray[Any], orientation: int) -> NDArray[Any]:
     """Apply EXIF orientation 1 to 8."""
     if orientation in (5, 6, 7, 8):
         field = field.T

@@ -17,7 +17,7 @@ from stippler.drawing.picture_values import TONES
 from stippler.drawing.reference import Picture, Reference
 from stippler.errors import ParameterError, PictureError
 from stippler.files.read import jpeg, pillow, png, tiff
-from stippler.files.read.darkness import check_tone, darkness_of_pixels
+from stippler.files.read.darkness import check_tone, levels_of_pixels
 from stippler.files.read.kinds import FORMATS_TEXT, HEAD_BYTES, kind_of, told_of
 from stippler.files.read.pixels import Colour, Pixels, of_array
 
@@ -94,10 +94,10 @@ def read_darkness(
     check_tone(tone)
     path = Path(path)
     with _told(path), path.open("rb") as stream:
-        darkness, told = darkness_of_pixels(_decoded(stream), tone)
+        levels, told = levels_of_pixels(_decoded(stream), tone)
     if notes is not None:
         notes.extend(told)
-    return darkness
+    return levels.darkness()
 
 
 def read_picture(
@@ -114,10 +114,10 @@ def read_picture(
         kept = len(data) <= MOST_KEPT
         source: BinaryIO = io.BytesIO(data) if kept else stream
         source.seek(0)
-        darkness, told = darkness_of_pixels(_decoded(source), tone)
+        levels, told = levels_of_pixels(_decoded(source), tone)
     if notes is not None:
         notes.extend(told)
-    picture = Picture(darkness, tone, path.name, data if kept else None)
+    picture = Picture(levels, tone, path.name, data if kept else None)
     return Reference.of(picture, width_mm)
 
 
@@ -141,15 +141,15 @@ def picture_of_bytes(data: bytes, name: str, tone: str) -> Picture:
     """Read a picture from a file's bytes; as `read_darkness`."""
     check_tone(tone)
     with _told(Path(name or "picture")):
-        darkness, _ = darkness_of_pixels(_decoded(io.BytesIO(data)), tone)
-    return Picture(darkness, tone, name, data)
+        levels, _ = levels_of_pixels(_decoded(io.BytesIO(data)), tone)
+    return Picture(levels, tone, name, data)
 
 
 def darkness_of_image(image: Image.Image, tone: str = "linear") -> NDArray[np.float32]:
     """Turn a Pillow image into darkness; as `read_darkness`."""
     check_tone(tone)
     _checked_size(image.size)
-    return darkness_of_pixels(pillow.decode(image), tone)[0]
+    return levels_of_pixels(pillow.decode(image), tone)[0].darkness()
 
 
 def darkness_of_array(values: Any, tone: str = "linear") -> NDArray[np.float32]:
@@ -174,7 +174,8 @@ def darkness_of_array(values: Any, tone: str = "linear") -> NDArray[np.float32]:
     channels = 1 if samples.ndim == 2 else samples.shape[2]
     colour: Colour = "grey" if channels < 3 else "rgb"
     alpha = "straight" if channels in (2, 4) else ""
-    return darkness_of_pixels(of_array(samples, colour, white, alpha=alpha), tone)[0]
+    levels, _ = levels_of_pixels(of_array(samples, colour, white, alpha=alpha), tone)
+    return levels.darkness()
 
 
 def _unsigned(pixels: NDArray[Any]) -> tuple[NDArray[Any], int]:

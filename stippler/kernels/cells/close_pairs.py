@@ -139,7 +139,11 @@ def find_close(
     Parameters
     ----------
     xy : (n, 2) float64
-        Sorted by grid cell; `cell_start` and `frame` as for `cell_ink.build_cells`.
+        Sorted by grid cell.
+    cell_start : (columns * rows + 1,) int32
+        Where the dots of each grid cell begin.
+    frame : (5,) float64
+        Width and height of the page, side of a grid cell, columns and rows of the grid.
     share : float
     awake : (n,) bool
         Only these are looked at; of the others `lack` is set to 0 and `nearest` is left.

@@ -401,16 +401,16 @@ def _put_outline(
     for s in range(n):
         if out[s, 5] != ring:
             if k > first and base + k <= len(corner):
-                following[base + k - 1] = first
+                following[base + k - 1] = base + first
             first, ring = k, out[s, 5]
         if out[s, 0] == out[s, 2] and out[s, 1] == out[s, 3]:
             continue
         if base + k < len(corner):
             corner[base + k, 0], corner[base + k, 1] = out[s, 0], out[s, 1]
-            beyond[base + k], following[base + k] = int(out[s, 4]), k + 1
+            beyond[base + k], following[base + k] = int(out[s, 4]), base + k + 1
         k += 1
     if k > first and base + k <= len(corner):
-        following[base + k - 1] = first
+        following[base + k - 1] = base + first
     outlines.n_sides[w] = k
     outlines.used[0] = base + k
 

@@ -107,9 +107,8 @@ class Outlines(NamedTuple):
     """Results of a range of dots, unless empty: the outlines of their cells, one after another.
 
     A side has its first corner, seen from the dot, the number of what lies beyond (see `border`),
-    and the number of the side after it, counted from the cell's first one. `n_sides` is by place
-    in the list of dots; ``used[0]`` sides are in use, and more than there is room for if there
-    was too little.
+    and the number of the side after it. `n_sides` is by place in the list of dots; ``used[0]``
+    sides are in use, and more than there is room for if there was too little.
     """
 
     corner: F8

@@ -35,6 +35,41 @@ def count_levels(darkness: Array, counts: Array, sums: Array) -> None:
 
 
 @kernel
+def number_values(bits: Array, slots: Array, found: Array, count: Array, out: Array) -> None:
+    """Give numbers to the different values of a field, in the order in which they occur first.
+
+    Parameters
+    ----------
+    bits : (m,) uint32
+        The values, as bits.
+    slots : (2**18,) int32
+        All -1; where values are looked for.
+    found : (k,) uint32
+        Is given the values; those that are there already stay.
+    count : (1,) int64
+        Their number, before and after; k + 1 where there are more, and the rest is left.
+    out : (m,) uint16
+        Is given the number of each value.
+    """
+    last = np.uint32(len(slots) - 1)
+    n = count[0]
+    for i in range(len(bits)):
+        value = bits[i]
+        at = np.uint32(np.uint32(value * np.uint32(2654435769)) >> np.uint32(14))
+        while slots[at] >= 0 and found[slots[at]] != value:
+            at = np.uint32((at + np.uint32(1)) & last)
+        if slots[at] < 0:
+            if n == len(found):
+                count[0] = n + 1
+                return
+            slots[at] = n
+            found[n] = value
+            n += 1
+        out[i] = slots[at]
+    count[0] = n
+
+
+@kernel
 def look_up_levels(
     start: int, stop: int, darkness: Array, scale: float, table: Array, out: Array
 ) -> None:

@@ -1,7 +1,13 @@
 """Radii of dots within their cells: how large a dot has to be to lay down what its cell asks for.
 
-What the range of radii does not allow is handed on to neighbours. Cells as `tone.cell_ink`
-builds them.
+A point of the page that any disc covers is covered by the disc of the nearest dot, as long as
+neighbours have about the same size. So the union of all discs is the sum, over the cells, of
+disc ∩ cell; overlaps are counted once and each dot can be solved by itself, exactly. What the range
+of radii does not allow is handed on to neighbours.
+
+Cells are given by their sides, as in `stippler.stippling.tessellation`: those of dot i are
+``first[i]..first[i + 1]``, side k runs from ``corner[k]`` to ``corner[following[k]]``, seen from
+the dot, and beyond it is the dot ``beyond[k]``, or none below 0.
 """
 
 from __future__ import annotations
@@ -17,16 +23,18 @@ Array = NDArray[Any]
 
 
 @inline
-def disc_in_cell(corners: Array, m: int, r: float) -> tuple[float, float]:
-    """Return the area of a disc around the origin inside a convex cell, and its arc in it."""
+def disc_in_cell(
+    corner: Array, following: Array, begin: int, end: int, r: float
+) -> tuple[float, float]:
+    """Return the area of a disc around the origin inside a cell, and its arc in it."""
     area = math.pi * r * r
     arc = 2.0 * math.pi * r
-    for k in range(m):
-        j = k + 1 if k + 1 < m else 0
-        ax = corners[k, 0]
-        ay = corners[k, 1]
-        dx = corners[j, 0] - ax
-        dy = corners[j, 1] - ay
+    for k in range(begin, end):
+        j = following[k]
+        ax = corner[k, 0]
+        ay = corner[k, 1]
+        dx = corner[j, 0] - ax
+        dy = corner[j, 1] - ay
         d2 = dx * dx + dy * dy
         if d2 == 0.0:
             continue
@@ -55,8 +63,9 @@ def disc_in_cell(corners: Array, m: int, r: float) -> tuple[float, float]:
 def fit_radii(
     start: int,
     stop: int,
-    corners: Array,
-    n_corners: Array,
+    first: Array,
+    corner: Array,
+    following: Array,
     asked: Array,
     before: Array,
     low: float,
@@ -70,14 +79,14 @@ def fit_radii(
     range did not allow: above 0 missing, below 0 too much.
     """
     for i in range(start, stop):
-        m = n_corners[i]
+        begin, end = first[i], first[i + 1]
         q = asked[i]
         if q == before[i]:
             continue
         r = min(max(math.sqrt(max(q, 0.0) / math.pi), low), high)
         a = low
         b = high
-        area, arc = disc_in_cell(corners[i], m, r)
+        area, arc = disc_in_cell(corner, following, begin, end, r)
         for _ in range(40):
             if abs(area - q) <= 1e-7 * abs(q):
                 break
@@ -93,7 +102,7 @@ def fit_radii(
                 if new == r or (new != high and new != low):
                     new = 0.5 * (a + b)
             r = new
-            area, arc = disc_in_cell(corners[i], m, r)
+            area, arc = disc_in_cell(corner, following, begin, end, r)
             if (r == low and area >= q) or (r == high and area <= q):
                 break
         radii[i] = r
@@ -104,9 +113,10 @@ def fit_radii(
 def find_room(
     start: int,
     stop: int,
-    corners: Array,
+    first: Array,
+    corner: Array,
+    following: Array,
     beyond: Array,
-    n_corners: Array,
     low: float,
     high: float,
     radii: Array,
@@ -118,24 +128,25 @@ def find_room(
     Only where a neighbour has ink left over; 0 elsewhere.
     """
     for i in range(start, stop):
+        begin, end = first[i], first[i + 1]
         wanted = False
-        for k in range(n_corners[i]):
-            j = beyond[i, k]
+        for k in range(begin, end):
+            j = beyond[k]
             wanted = wanted or (j >= 0 and left[j] != 0.0)
         room[i, 0] = 0.0
         room[i, 1] = 0.0
         if not wanted:
             continue
-        area, _arc = disc_in_cell(corners[i], n_corners[i], radii[i])
-        least, _arc = disc_in_cell(corners[i], n_corners[i], low)
-        most, _arc = disc_in_cell(corners[i], n_corners[i], high)
+        area, _arc = disc_in_cell(corner, following, begin, end, radii[i])
+        least, _arc = disc_in_cell(corner, following, begin, end, low)
+        most, _arc = disc_in_cell(corner, following, begin, end, high)
         room[i, 0] = max(area - least, 0.0)
         room[i, 1] = max(most - area, 0.0)
 
 
 @kernel
 def sum_room(
-    start: int, stop: int, beyond: Array, n_corners: Array, left: Array, room: Array, given: Array
+    start: int, stop: int, first: Array, beyond: Array, left: Array, room: Array, given: Array
 ) -> None:
     """Write what share of its room each neighbour of a dot has to give for what the dot has left.
 
@@ -148,8 +159,8 @@ def sum_room(
             continue
         side = 1 if q > 0.0 else 0
         total = 0.0
-        for k in range(n_corners[i]):
-            j = beyond[i, k]
+        for k in range(first[i], first[i + 1]):
+            j = beyond[k]
             if j >= 0:
                 total += room[j, side]
         if total > 0.0:
@@ -160,8 +171,8 @@ def sum_room(
 def pass_on(
     start: int,
     stop: int,
+    first: Array,
     beyond: Array,
-    n_corners: Array,
     room: Array,
     given: Array,
     asked: Array,
@@ -170,8 +181,8 @@ def pass_on(
     """Take over what neighbours could not lay down, and hand on what the dot itself could not."""
     for i in range(start, stop):
         q = asked[i]
-        for k in range(n_corners[i]):
-            j = beyond[i, k]
+        for k in range(first[i], first[i + 1]):
+            j = beyond[k]
             if j < 0:
                 continue
             if given[j] != 0.0:
@@ -183,16 +194,9 @@ def pass_on(
 
 @kernel
 def compare_sizes(
-    start: int,
-    stop: int,
-    corners: Array,
-    beyond: Array,
-    n_corners: Array,
-    asked: Array,
-    radii: Array,
-    odd: Array,
-    tone: Array,
-) -> None:
+    start: int, stop: int, first: Array, beyond: Array, area: Array, asked: Array, radii: Array,
+    odd: Array, tone: Array,
+) -> None:  # fmt: skip
     """Write by how much a dot is larger than its neighbours (`odd`, a logarithm), and its tone.
 
     The tone is the ink that its cell asks for over the cell's area.
@@ -200,26 +204,20 @@ def compare_sizes(
     for i in range(start, stop):
         total = 0.0
         n = 0
-        area = 0.0
-        m = n_corners[i]
-        for k in range(m):
-            j = k + 1 if k + 1 < m else 0
-            area += 0.5 * (
-                corners[i, k, 0] * corners[i, j, 1] - corners[i, k, 1] * corners[i, j, 0]
-            )
-            if beyond[i, k] >= 0:
-                total += math.log(radii[beyond[i, k]])
+        for k in range(first[i], first[i + 1]):
+            if beyond[k] >= 0:
+                total += math.log(radii[beyond[k]])
                 n += 1
         odd[i] = math.log(radii[i]) - total / n if n > 0 else 0.0
-        tone[i] = asked[i] / area if area > 0.0 else 0.0
+        tone[i] = asked[i] / area[i] if area[i] > 0.0 else 0.0
 
 
 @kernel
 def even_sizes(
     start: int,
     stop: int,
+    first: Array,
     beyond: Array,
-    n_corners: Array,
     radii: Array,
     odd: Array,
     tone: Array,
@@ -234,8 +232,8 @@ def even_sizes(
     """
     for i in range(start, stop):
         q = asked[i]
-        for k in range(n_corners[i]):
-            j = beyond[i, k]
+        for k in range(first[i], first[i + 1]):
+            j = beyond[k]
             if j < 0:
                 continue
             step = (tone[j] - tone[i]) / contrast

@@ -64,7 +64,7 @@ def _draw_name(widgets: Widgets, session: Session) -> None:
     widgets.tip(session.name)
     reference = session.reference
     if reference is not None:
-        rows, columns = reference.darkness.shape
+        rows, columns = reference.source.levels.shape
         widgets.caption(
             f"{columns:,} × {rows:,} px  ·  {reference.width_mm:.4g} × {reference.height_mm:.4g} mm"
         )

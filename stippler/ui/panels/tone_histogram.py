@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from stippler.drawing.adjustment import Adjustment
+from stippler.drawing.levels import Levels
 from stippler.drawing.reference import Reference
 from stippler.editor.tone_handles import (
     Handle,
@@ -50,9 +51,9 @@ class ToneHistogram:
 
     def draw(self, widgets: Widgets, reference: Reference, now: Adjustment) -> Adjustment:
         """Draw bars from white to black, and the ink for each tone as a line; return the line."""
-        plain = reference.picture.darkness
-        if self._counted is not plain:
-            self._counted, self._share = plain, _shares(plain)
+        levels = reference.source.levels
+        if self._counted is not levels:
+            self._counted, self._share = levels, _shares(levels)
         knob = _KNOB * widgets.scale
         across = imgui.get_content_region_avail().x
         at = imgui.get_cursor_screen_pos()
@@ -156,10 +157,10 @@ class ToneHistogram:
             draw.add_circle(at, knob, accent if in_use else line, 0, 1.5 * widgets.scale)
 
 
-def _shares(darkness: NDArray[np.float32]) -> NDArray[np.float64]:
+def _shares(levels: Levels) -> NDArray[np.float64]:
     """Return how often each tone but paper occurs, the root of it, the highest bar 1."""
-    step = max(int(np.sqrt(darkness.size / _MOST_PIXELS)), 1)
-    some = darkness[::step, ::step]
+    every = slice(None, None, max(int(np.sqrt(levels.size / _MOST_PIXELS)), 1))
+    some = levels.darkness(every, every)
     counts = np.histogram(some[some > 0.0], _BARS, (0.0, 1.0))[0]
     shares: NDArray[np.float64] = np.sqrt(counts / max(int(counts.max()), 1))
     return shares

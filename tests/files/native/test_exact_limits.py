@@ -64,7 +64,7 @@ def test_shapes_that_are_some_are_taken():
 def test_a_later_programs_fields_of_each_kind_of_value_survive():
     drawing = Drawing.blank(Page(40.0, 30.0))
     drawing.dots = Dots.round([(1, 1)], 0.2)
-    drawing.reference = Reference.of(Picture(np.zeros((3, 4), np.float32), "linear", "a"), 40.0)
+    drawing.reference = Reference.of(Picture.of(np.zeros((3, 4), np.float32), "linear", "a"), 40.0)
     members = members_of(drawing)
     document = json.loads(members["document.json"])
     document["reference"]["mood"] = "calm"

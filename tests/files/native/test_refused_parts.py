@@ -261,7 +261,7 @@ def test_pictures_come_as_their_file_or_as_darkness():
     stream = io.BytesIO()
     Image.fromarray(np.full((2, 3), 60, np.uint8)).save(stream, "png")
     for picture in (
-        Picture(darkness, "linear", "plain"),
+        Picture.of(darkness, "linear", "plain"),
         picture_of_bytes(stream.getvalue(), "one.png", "linear"),
     ):
         known = {}
@@ -269,7 +269,7 @@ def test_pictures_come_as_their_file_or_as_darkness():
         assert edit_log.entry_of(record, known, picture_of_bytes, "here", Limits()) is None
         (found,) = known.values()
         assert found == picture
-        assert found.darkness.tobytes() == picture.darkness.tobytes()
+        assert found.levels.darkness().tobytes() == picture.levels.darkness().tobytes()
         assert (found.name, found.tone, found.data) == (picture.name, picture.tone, picture.data)
 
 

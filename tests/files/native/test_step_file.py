@@ -37,7 +37,7 @@ def worked_on(n_steps=6, seed=1, budget=1 << 28):
         document.commit()
     document.begin("Picture")
     darkness = rng.random((3, 4)).astype(np.float32)
-    document.set("reference", 0, Reference.of(Picture(darkness), 40.0))
+    document.set("reference", 0, Reference.of(Picture.of(darkness), 40.0))
     document.commit()
     document.begin("Without")
     document.set("reference", 0, None)

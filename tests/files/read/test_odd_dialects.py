@@ -77,7 +77,7 @@ def written(samples, **options):
 
 
 def darkness(data):
-    return picture_of_bytes(data, "a.tif", "perceptual").darkness
+    return picture_of_bytes(data, "a.tif", "perceptual").levels.darkness()
 
 
 @pytest.mark.parametrize(

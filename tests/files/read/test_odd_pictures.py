@@ -45,7 +45,7 @@ def turned(orientation):
 
 
 def dark(data):
-    return picture_of_bytes(data, "a.jpg", "linear").darkness
+    return picture_of_bytes(data, "a.jpg", "linear").levels.darkness()
 
 
 def test_a_deep_jpeg_is_turned_as_its_exif_says():
@@ -189,7 +189,7 @@ def written(samples, **options):
 
 
 def tiff_dark(data):
-    return picture_of_bytes(data, "a.tif", "linear").darkness
+    return picture_of_bytes(data, "a.tif", "linear").levels.darkness()
 
 
 def test_a_tiff_of_thumbnails_alone_shows_the_first():

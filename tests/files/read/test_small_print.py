@@ -162,7 +162,7 @@ def png(*extra):
 
 
 def dark(data, name="a.png"):
-    return picture_of_bytes(data, name, "linear").darkness
+    return picture_of_bytes(data, name, "linear").levels.darkness()
 
 
 def test_a_gamma_that_is_as_good_as_srgbs_is_srgb():
