@@ -100,7 +100,8 @@ class Cells:
         self.grid = DotGrid.over(parts, np.bincount(compartment_of_dot, minlength=len(parts)))
         self.spacing = float(np.sqrt(parts.area.sum() / max(n, 1)))
         self._cell_start = np.zeros(self.grid.n_cells + 1, np.int32)
-        self._crowd, self._tree_of_cell, self._node = _NO_ROWS, _NO_ROWS, _NO_CELLS
+        self._crowd, self._tree_of_cell = _NO_ROWS, _NO_ROWS
+        self._node, self._arc = _NO_CELLS, _NO_CELLS
         self._field = running_sums(density, parts)
         self._slack = np.inf
         self._keep = False
@@ -336,7 +337,9 @@ class Cells:
     @property
     def _table(self) -> Grid:
         real, whole = self.grid.real, self.grid.whole
-        return Grid(real, whole, self._cell_start, self._slack, self._tree_of_cell, self._node)
+        return Grid(
+            real, whole, self._cell_start, self._slack, self._tree_of_cell, self._node, self._arc
+        )
 
     def _relax(
         self,
@@ -436,13 +439,13 @@ class Cells:
         if not done:
             return False
         sort_by_grid_cell(cell_of_dot, cell_start, order)
-        crowd, tree_of_cell, node = self._split_crowds(cell_start, order)
+        crowd, tree_of_cell, node, arc = self._split_crowds(cell_start, order)
         if cancel is not None and cancel():
             return False
         names = ["fixed", "compartment_of_dot", "order", "_is_met"]
         sorted_rows: dict[str, Any] = {
             "_cell_start": cell_start, "_crowd": crowd, "_tree_of_cell": tree_of_cell,
-            "_node": node,
+            "_node": node, "_arc": arc,
         }  # fmt: skip
         if with_stars:
             names += ["_n_star", "_kind_of_cell", "_free_of_dot"]
@@ -476,7 +479,7 @@ class Cells:
         self._has_stars = self._has_stars and with_stars
         return True
 
-    def _split_crowds(self, cell_start: Rows, order: Rows) -> tuple[Rows, Rows, Floats]:
+    def _split_crowds(self, cell_start: Rows, order: Rows) -> tuple[Rows, Rows, Floats, Floats]:
         """Order the dots of crowded grid cells by trees; return cells, their trees, room for them.
 
         All are empty where no cell is crowded.
@@ -484,21 +487,24 @@ class Cells:
         n_dots = np.diff(cell_start)
         crowd = np.flatnonzero(n_dots > CROWD).astype(np.int32)
         if not len(crowd):
-            return crowd, _NO_ROWS, _NO_CELLS
+            return crowd, _NO_ROWS, _NO_CELLS, _NO_CELLS
         args = (split_crowds, len(crowd), crowd, cell_start, self.xs, self.ys, order)
         parallel_for(*args, grain=1, chunks=16)
         halvings = np.ceil(np.log2(n_dots[crowd] / LEAF)).astype(np.int64)
         ends = np.cumsum(2 << halvings)
-        tree_of_cell = np.full(len(n_dots), -1, np.int32)
+        number = np.arange(len(n_dots))
+        filled = np.where(n_dots > 0, number, len(n_dots))
+        tree_of_cell = (number - np.minimum.accumulate(filled[::-1])[::-1] - 1).astype(np.int32)
         tree_of_cell[crowd] = np.concatenate([[0], ends[:-1]])
-        return crowd, tree_of_cell, np.empty((int(ends[-1]), 4))
+        n_nodes = int(ends[-1])
+        return crowd, tree_of_cell, np.empty((n_nodes, 4)), np.empty((n_nodes, 8))
 
     def _bound_crowds(self) -> None:
         """Fit the trees of crowded grid cells to where their dots are now."""
         if len(self._crowd):
             parallel_for(
                 bound_crowds, len(self._crowd), self._crowd, self._tree_of_cell, self._cell_start,
-                self.xs, self.ys, self._node, grain=1, chunks=16,
+                self.xs, self.ys, self._node, self._arc, grain=1, chunks=16,
             )  # fmt: skip
 
 

@@ -216,8 +216,9 @@ class LocalRelaxation:
         self._dots = Dots(self._xs, self._ys, np.zeros(0, np.bool_), self._compartment_of_slot)
         cell_start = (np.arange(n_cells + 1) * self._room).astype(np.int32)
         self._table = Grid(
-            self._grid.real, self._grid.whole, cell_start, 0.0, np.empty(0, np.int32), _NO_NODES
-        )
+            self._grid.real, self._grid.whole, cell_start, 0.0, np.empty(0, np.int32), _NO_NODES,
+            _NO_NODES,
+        )  # fmt: skip
         self._moves = Moves(
             np.empty(n_slots), np.empty(n_slots), np.empty(n_slots), np.zeros(n_slots, np.uint8),
             np.empty(n_slots),

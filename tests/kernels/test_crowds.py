@@ -24,9 +24,10 @@ def test_leaves_are_small_and_boxes_hold_their_dots(n, kind):
     )
     depth = int(np.ceil(np.log2(n / LEAF)))
     node = np.full((4 + (2 << depth), 4), np.nan)
+    arc = np.full((4 + (2 << depth), 8), np.nan)
     tree_of_cell = np.array([-1, 2, -1], np.int32)
     moved = xy[order] + 0.01 * np.random.default_rng(2).standard_normal((n + 7, 2))
-    bound_crowds(0, 1, crowd, tree_of_cell, cell_start, *np.ascontiguousarray(moved.T), node)
+    bound_crowds(0, 1, crowd, tree_of_cell, cell_start, *np.ascontiguousarray(moved.T), node, arc)
     assert node[2, 0] == depth
     for level in range(depth + 1):
         for v in range(1 << level):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from stippler.kernels.cells.cell_trees import APART, cut_lanes_by_span
+from stippler.kernels.cells.cell_trees import APART, cut_cell_by_crowd, cut_lanes_by_span
 from stippler.kernels.cells.grid import distance2_to_span, ring_span
 from stippler.kernels.cells.tables import F8, Dots, Grid, Spot
 from stippler.kernels.cells.voronoi import OVERFLOW, cut_cell, reach2_of_cell
@@ -44,21 +44,41 @@ def cut_lanes_by_ring(
 
 
 @inner
+def _cut_cell_by_run(
+    cell: F8, m: int, dots: Dots, grid: Grid, spot: Spot, first: int, last: int
+) -> int:
+    """Cut a cell in plain arrays by the dots of grid cells first..last."""
+    reach2 = reach2_of_cell(cell, m)
+    for j in range(grid.cell_start[first], grid.cell_start[last + 1]):
+        a, b = dots.x[j] - spot.x, dots.y[j] - spot.y
+        d2 = a * a + b * b
+        if d2 >= 4.0 * reach2 or d2 == 0.0:
+            continue
+        m = cut_cell(cell, m, a, b, 0.5 * d2, float(j))
+        if m == OVERFLOW:
+            break
+        reach2 = reach2_of_cell(cell, m)
+    return m
+
+
+@inner
 def cut_cell_by_ring(cell: F8, m: int, dots: Dots, grid: Grid, spot: Spot, ring: int) -> int:
     """Cut a cell in plain arrays by the dots of a ring of grid cells."""
-    reach2 = reach2_of_cell(cell, m)
     for s in range(3 if ring == 1 else 4 * ring):
         row, first, last = ring_span(ring, s, spot)
         if last < first:
             continue
         start = spot.first_cell + row * spot.nx
-        for j in range(grid.cell_start[start + first], grid.cell_start[start + last + 1]):
-            a, b = dots.x[j] - spot.x, dots.y[j] - spot.y
-            d2 = a * a + b * b
-            if d2 >= 4.0 * reach2 or d2 == 0.0:
-                continue
-            m = cut_cell(cell, m, a, b, 0.5 * d2, float(j))
-            if m == OVERFLOW:
-                return m
-            reach2 = reach2_of_cell(cell, m)
+        if len(grid.tree_of_cell) > 0:
+            for k in range(start + first, start + last + 1):
+                if grid.tree_of_cell[k] >= 0:
+                    m = cut_cell_by_crowd(cell, m, dots, grid, spot.x, spot.y, k)
+                elif grid.tree_of_cell[k] == -1:
+                    m = _cut_cell_by_run(cell, m, dots, grid, spot, k, k)
+                if m == OVERFLOW:
+                    return m
+        else:
+            m = _cut_cell_by_run(cell, m, dots, grid, spot, start + first, start + last)
+        if m == OVERFLOW:
+            return m
     return m

@@ -27,11 +27,20 @@ from stippler.kernels.cells.border import (
     sum_area,
     sum_field,
 )
-from stippler.kernels.cells.cell_trees import cut_lanes_by_crowd
-from stippler.kernels.cells.grid import seen_distance, spot_of
+from stippler.kernels.cells.cell_trees import (
+    APART,
+    cut_lanes_by_crowd,
+    cut_lanes_by_span,
+)
+from stippler.kernels.cells.grid import ring_span, seen_distance, spot_of
 from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
-from stippler.kernels.cells.row_search import SWEEP_FROM, cut_far_corners, sweep_rows
+from stippler.kernels.cells.row_search import (
+    SWEEP_FROM,
+    cut_by_dots_in_sight,
+    cut_far_corners,
+    sweep_rows,
+)
 from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
 from stippler.kernels.cells.tables import (
     F8,
@@ -49,6 +58,7 @@ from stippler.kernels.cells.tables import (
 )
 from stippler.kernels.cells.voronoi import (
     OVERFLOW,
+    cut_lanes_by_run,
     reach2_of_cell,
     start_cell,
     start_lanes,
@@ -140,7 +150,7 @@ def _relax(
             cell = spot.first_cell + spot.iy * spot.nx + spot.ix
             free = max(border.clear[cell] - 1, 0) * spot.h
         m, is_packed, n, reach2, free, n_near = _cell_of_dot(
-            U, V, N, dots, grid, border, spot, free, pads
+            U, V, N, S, dots, grid, border, spot, free, pads
         )
         moves.free[i] = free
         if m == OVERFLOW:
@@ -191,8 +201,8 @@ def _relax(
 
 @merged
 def _cell_of_dot(
-    U: Any, V: Any, N: Any, dots: Dots, grid: Grid, border: Border, spot: Spot, free: float,
-    pads: Pads,
+    U: Any, V: Any, N: Any, S: Any, dots: Dots, grid: Grid, border: Border, spot: Spot,
+    free: float, pads: Pads,
 ) -> tuple[int, bool, int, float, float, int]:  # fmt: skip
     """Compute a dot's cell; `free` is a distance within which no border edge lies.
 
@@ -213,8 +223,12 @@ def _cell_of_dot(
         own = spot.first_cell + spot.iy * spot.nx + spot.ix
         if grid.tree_of_cell[own] >= 0:
             crowd, ring = ZERO + own, ZERO
-    is_packed = True
-    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+    is_packed, is_second = True, crowd >= 0 and grid.node[grid.tree_of_cell[crowd], 1] != 0.0
+    m = OVERFLOW
+    if is_second:
+        m = _cell_of_far_side(U, V, N, S, dots, grid, spot)
+    if m == OVERFLOW:
+        m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
         n = n_near = ZERO
         reach2, is_swept = 0.0, False
@@ -229,6 +243,12 @@ def _cell_of_dot(
                     m = cut_far_corners(U, V, N, m, dots, grid, spot)
                 if m != OVERFLOW:
                     m = cut_lanes_by_ring(U, V, N, m, dots, grid, spot, ring, crowd)
+            if m == OVERFLOW and len(grid.tree_of_cell) > 0 and not is_second:
+                is_second = True
+                m = _cell_of_far_side(U, V, N, S, dots, grid, spot)
+                ring = ZERO if crowd >= 0 else ZERO + 1
+                if m != OVERFLOW:
+                    continue
             if m == OVERFLOW:
                 is_packed = False
                 m = start_cell(pads.cell, spot.x0, spot.y0, spot.x1, spot.y1)
@@ -261,6 +281,44 @@ def _cell_of_dot(
             break
         ring += 1
     return m, is_packed, n, reach2, free, n_near
+
+
+@inner
+def _cell_of_far_side(U: Any, V: Any, N: Any, S: Any, dots: Dots, grid: Grid, spot: Spot) -> int:
+    """Begin a cell with the dots across a void alone; return its corners, or `OVERFLOW`.
+
+    They are those that bound a rough cell, cut by the dots next to its own and those in sight. By
+    dots nearby a cell is not to be cut twice: a corner on a bisector may round across it.
+    """
+    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+    own = spot.first_cell + spot.iy * spot.nx + spot.ix
+    for s in range(ZERO, 4):
+        row, first, last = ring_span(1, max(s - 1, 0), spot)
+        if s == 0:
+            first = last = spot.ix
+        if first <= last and m != OVERFLOW:
+            m = cut_lanes_by_span(
+                U, V, N, m, dots, grid, spot, row, first, last, APART, math.inf,
+                own if s > 0 else ZERO - 1, ZERO + 1,
+            )  # fmt: skip
+        if m != OVERFLOW and (s == 0 or s == 3):
+            m = cut_by_dots_in_sight(U, V, N, m, dots, grid, spot)
+    if m == OVERFLOW:
+        return m
+    n_far, far2 = ZERO, 16.0 * spot.h * spot.h
+    for k in range(m):
+        j = get(N, k)
+        if j >= 0 and (dots.x[j] - spot.x) ** 2 + (dots.y[j] - spot.y) ** 2 > far2:
+            put(S, n_far, j)
+            n_far += 1
+    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+    for k in range(n_far):
+        j = ZERO + get(S, k)
+        if m != OVERFLOW:
+            m = cut_lanes_by_run(
+                U, V, N, m, dots.x, dots.y, spot.x, spot.y, j, j + 1, APART, math.inf
+            )
+    return m
 
 
 @merged

@@ -25,7 +25,7 @@ class Dots(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The grid of each compartment, see `grid`, and its crowded cells, see `crowds`.
+    """The grid of each compartment, see `grid`, and its crowded cells, see `cell_trees`.
 
     Dots may have gone as far as `slack` from the grid cell they are listed in.
     """
@@ -36,6 +36,7 @@ class Grid(NamedTuple):
     slack: float
     tree_of_cell: I4
     node: F8
+    arc: F8
 
 
 class Border(NamedTuple):

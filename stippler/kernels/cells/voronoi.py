@@ -33,6 +33,12 @@ from stippler.kernels.machine.simd import (
 TOLERANCE = 1e-14
 """A corner that a bisector passes closer than this share of its distance is not cut."""
 
+_MANY_CORNERS = 10
+"""Corners from which on a cell loses no more of them for next to nothing."""
+
+_NOTHING = 2e-18
+"""Twice the area of next to nothing, of the square of a corner's distance."""
+
 OVERFLOW = -1
 """Number of corners of a cell that has more than there is room for."""
 
@@ -197,6 +203,9 @@ def unpack_lanes(
 def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> int:
     """Cut away the part with ``a x + b y > c``; return the corners left, `OVERFLOW` if too many.
 
+    Of a cell of many corners next to nothing is not cut away: where many dots lie on a circle,
+    cells end in a point at its middle, in which each bisector takes a corner or not as rounded.
+
     The corners beyond the line are consecutive; the first and last crossed sides are shortened
     and the cut becomes a new side.
     """
@@ -225,16 +234,21 @@ def cut_cell(cell: F8, m: int, a: float, b: float, c: float, number: float) -> i
         n_out += 1
     if n_out == m:
         return m  # only rounding can put the dot itself beyond its own bisector
-    if m - n_out + 2 > cell.shape[1]:
-        return OVERFLOW
     p = first - 1 if first > 0 else m - 1
     q = last + 1 if last + 1 < m else 0
-    t = cell[6, p] / (cell[6, p] - cell[6, first])
+    before, after = min(cell[6, p], 0.0), min(cell[6, q], 0.0)
+    t = before / (before - cell[6, first])
     au = cell[0, p] + t * (cell[0, first] - cell[0, p])
     av = cell[1, p] + t * (cell[1, first] - cell[1, p])
-    t = cell[6, q] / (cell[6, q] - cell[6, last])
+    t = after / (after - cell[6, last])
     bu = cell[0, q] + t * (cell[0, last] - cell[0, q])
     bv = cell[1, q] + t * (cell[1, last] - cell[1, q])
+    if n_out == 1 and m >= _MANY_CORNERS:
+        u, v = cell[0, first], cell[1, first]
+        if abs((au - u) * (bv - v) - (av - v) * (bu - u)) <= _NOTHING * (u * u + v * v):
+            return m
+    if m - n_out + 2 > cell.shape[1]:
+        return OVERFLOW
     if first <= last and n_out >= 2:  # room for both new corners in place
         cell[0, first], cell[1, first] = au, av
         _set_line(cell, first, a, b, c, number)

@@ -304,6 +304,48 @@ def may_cut_from_box(
 
 
 @_operation
+def may_cut_from_arc(
+    typing_context: Any, us: Any, vs: Any, m: Any, x: Any, y: Any, arc: Any, row: Any, slack: Any
+) -> Any:
+    """Return whether dots along an arc may lie in the circle about a corner through the dot.
+
+    `arc` is a table of what `crowd_arcs` tells of dots, by row; (x, y) is the arc's middle seen
+    from the dot. A dot counts as outside from `slack` times the corner's distance on.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = _data(context, builder, signature.args[5], args[5])
+        first = builder.mul(args[6], _I8(8))
+        row_ = [builder.load(builder.gep(data, [builder.add(first, _I8(k))])) for k in range(2, 8)]
+        tx, ty, ratio, ax, ay, least = (_splat(builder, number, LANES) for number in row_)
+        x_, y_ = _splat(builder, args[3], LANES), _splat(builder, args[4], LANES)
+        u = _load(builder, args[0], _I8(FRONT), LANES)
+        v = _load(builder, args[1], _I8(FRONT), LANES)
+        two = ir.Constant(u.type, [2.0] * LANES)
+
+        def size(vector: Any) -> Any:
+            return _larger(builder, vector, builder.fneg(vector))
+
+        def both(a: Any, b: Any, c: Any, d: Any) -> Any:
+            return _add(builder, _mul(builder, a, b), _mul(builder, c, d))
+
+        gx = _add(builder, ax, _mul(builder, two, _sub(builder, x_, u)))
+        gy = _add(builder, ay, _mul(builder, two, _sub(builder, y_, v)))
+        across = _sub(builder, _mul(builder, gy, tx), _mul(builder, gx, ty))
+        spread = _add(builder, size(both(gx, tx, gy, ty)), _mul(builder, ratio, size(across)))
+        middle = _sub(builder, both(x_, x_, y_, y_), _mul(builder, two, both(u, x_, v, y_)))
+        off = _sub(builder, _add(builder, middle, least), spread)
+        far = _larger(builder, size(u), size(v))
+        off = _add(builder, off, _mul(builder, far, _splat(builder, args[7], LANES)))
+        near = builder.fcmp_ordered("<", off, ir.Constant(u.type, [0.0] * LANES))
+        bits = _mask_bits(builder, builder.and_(near, _lanes_below(builder, args[2], LANES)), LANES)
+        return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
+
+    real = types.float64
+    return types.boolean(us, vs, types.int64, real, real, arc, types.int64, real), generate
+
+
+@_operation
 def moments_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
     """Return twice the area and six times both first moments of the m corners' polygon."""
 
