@@ -178,11 +178,13 @@ def _nearest_levels(darkness: NDArray[np.float32]) -> NDArray[np.uint16]:
 
 def _looked_up(table: NDArray[_Number], of_pixel: NDArray[np.uint16]) -> NDArray[_Number]:
     """Return the table's entries for pixels."""
+    if of_pixel.size <= _BAND_PX:
+        return np.take(table, of_pixel)  # in half the time that indexing takes
     out = np.empty(of_pixel.shape, table.dtype)
-    rows = max(_BAND_PX // max(of_pixel.shape[1], 1), 1)
+    rows = max(_BAND_PX // 4 // max(of_pixel.shape[1], 1), 1)
 
     def part(start: int, stop: int) -> None:
-        out[start:stop] = table[of_pixel[start:stop]]
+        np.take(table, of_pixel[start:stop], out=out[start:stop], mode="clip")
 
     parallel_for(part, len(out), grain=rows, chunks=max(len(out) // rows, 1))
     return out

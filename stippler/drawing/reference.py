@@ -94,7 +94,7 @@ class Reference:
         How its darkness is changed before dots are made of it.
     """
 
-    __slots__ = ("_plain", "_values", "adjustment", "source", "width_mm")
+    __slots__ = ("_levels", "_plain", "adjustment", "source", "width_mm")
 
     def __init__(self, darkness: NDArray[np.floating], width_mm: float) -> None:
         self._set(Picture.of(darkness), width_mm, NEUTRAL)
@@ -110,21 +110,21 @@ class Reference:
         if not (np.isfinite(width_mm) and width_mm > 0):
             raise ParameterError(f"{width_mm} mm is no width", "page", "give a width above 0")
         self.source, self.width_mm, self.adjustment = source, width_mm, adjustment
-        self._values = source.levels.values if adjustment == NEUTRAL else None
+        self._levels = source.levels if adjustment == NEUTRAL else None
         self._plain: Reference | None = None
+
+    @property
+    def levels(self) -> Levels:
+        """The picture's levels with their values as adjusted; worked out when first asked for."""
+        if self._levels is None:
+            plain = self.source.levels
+            self._levels = Levels(plain.of_pixel, self.adjustment.apply(plain.values))
+        return self._levels
 
     @property
     def values(self) -> NDArray[np.float32]:
         """What the picture's levels are as adjusted, read-only, (n,)."""
-        if self._values is None:
-            self._values = self.adjustment.apply(self.source.levels.values)
-            self._values.flags.writeable = False
-        return self._values
-
-    @property
-    def levels(self) -> Levels:
-        """The darkness of all pixels as adjusted; nothing of a pixel's size is worked out."""
-        return Levels(self.source.levels.of_pixel, self.values)
+        return self.levels.values
 
     @property
     def darkness(self) -> NDArray[np.float32]:
