@@ -123,7 +123,7 @@ def test_each_area_of_a_picture_meets_the_tone(name):
     assert_met(document, 15)
 
 
-@settings(max_examples=6 * EXAMPLES, deadline=None)
+@settings(max_examples=4 * EXAMPLES, deadline=None)
 @given(st.integers(0, 10_000), st.sampled_from(["middle", "dark", "waves"]))
 def test_any_division_meets_the_tone(seed, kind):
     rng = np.random.default_rng(seed)
@@ -133,11 +133,11 @@ def test_any_division_meets_the_tone(seed, kind):
 
 
 def test_an_area_made_again_alone_meets_the_tone_among_dots_that_stay():
-    for kind in ("middle", "dark", "waves"):
+    for kind in ("dark", "waves"):
         document = divided(pictured(kind), 16, 5, n_dots=1500)
         process_now(document, list(document.drawing.areas))
         large = [k for k, (_, n) in errors(document).items() if n >= 1.3 * MANY]
-        for k in large[1:4]:
+        for k in large[1:3]:
             others = document.dots.copy()
             process_now(document, [k])
             off, n = errors(document)[k]

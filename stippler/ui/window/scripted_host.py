@@ -6,6 +6,7 @@ Input goes through the window's own callbacks, so it takes the same way as a per
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -169,9 +170,13 @@ class Host:
         self.key("enter")
 
     def bring(self, label: str) -> None:
-        """Turn the wheel over a control's panel until the control is in sight."""
+        """Turn the wheel over a control's panel until the control is in sight, or stays."""
+        before = math.nan
         for _ in range(_MOST_NOTCHES):
             _, y = self.place(label)
+            if y == before:
+                return
+            before = y
             x0, low, x1, high = self._editor.widgets.rooms.get(label, (0.0, -1e9, 0.0, 1e9))
             if low <= y <= high:
                 return
