@@ -17,6 +17,6 @@ settings.register_profile(
 settings.register_profile("long", deadline=None, print_blob=True, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 os.environ["STIPPLER_STATE_DIR"] = tempfile.mkdtemp(prefix="stippler-state-")  # not a person's
-os.environ.setdefault("LP_NUM_THREADS", "0")  # software GL's: two processes share two cores
+os.environ.setdefault("LP_NUM_THREADS", "1")  # software GL's: two processes share two cores
 EXAMPLES = 10 if os.environ.get("HYPOTHESIS_PROFILE") == "long" else 1
 """Tests that set their own number of examples take so many times as many."""
