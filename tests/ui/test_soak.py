@@ -10,10 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import EXAMPLES
+
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", range(1, 1 + EXAMPLES))
 def test_random_input_does_no_harm(
     kernels: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
 ) -> None:
