@@ -32,6 +32,8 @@ _MOST = 1.08  # times the size of an area's dots, at most
 _STEP = 0.03  # of their sizes in one round, at most
 _ROUNDS = 8
 _ASIDE = np.array([7.5e-5, 5.7e-5])  # of its radius: where a disc's anchor is, seen from the centre
+_ODD = np.array([0.7548776662466927, 0.5698402909980532])  # of whose multiples none come together
+_ASTRAY = 1e-6  # of its radius: so far a disc is moved, that no rims or borders meet in one point
 _WIDER = 1e-5  # by which lists of discs that may overlap are longer than they need to be
 
 
@@ -118,7 +120,8 @@ class InkOfDiscs:
     def __init__(self, outlines: Sequence[Outline], position: Floats, reach: Floats) -> None:
         parts = Compartments.of(outlines)
         self._n_areas, self._edges = len(outlines), parts.edges.copy()
-        self._place = np.ascontiguousarray(position, np.float64)
+        odd = np.arange(1, len(position) + 1)[:, None] * _ODD % 1.0 - 0.5
+        self._place = position + odd * reach[:, None] * _ASTRAY
         self._anchor = self._place + reach[:, None] * _ASIDE
         self.area_of = OutlineGrid(outlines).find(self._anchor)
         dot, touched = _touching(self._place, reach, self._edges)

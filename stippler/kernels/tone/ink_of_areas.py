@@ -21,6 +21,7 @@ from stippler.kernels.tone.union_share import Grids, reached
 Array = NDArray[Any]
 
 _TURN = 2.0 * math.pi
+_NEARLY = 1e-9  # of an edge beyond its ends: the rim may go through a corner
 
 
 @kernel
@@ -268,7 +269,7 @@ def _cross(ax: float, ay: float, bx: float, by: float, r: float, crossing: Array
     middle = -(ax * dx + ay * dy) / d2
     half = math.sqrt(under) / d2
     for t in (middle - half, middle + half):
-        if 0.0 <= t <= 1.0:
+        if -_NEARLY <= t <= 1.0 + _NEARLY:  # one too many parts a rim, one too few is wrong
             angle = math.atan2(ay + t * dy, ax + t * dx)
             crossing[n] = angle if angle >= 0.0 else angle + _TURN
             n += 1
