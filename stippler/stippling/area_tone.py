@@ -28,7 +28,7 @@ Rows = NDArray[np.int64]
 
 _FINE = 2e-3  # of an area's ink that may lack or be too much
 _MET = 4e-4  # of it, once an area's sizes are changed
-_MOST = 1.08  # times the size of an area's dots, at most
+_MOST = 1.06  # times the size of an area's dots, at most
 _STEP = 0.03  # of their sizes in one round, at most
 _ROUNDS = 8
 _ASIDE = np.array([7.5e-5, 5.7e-5])  # of its radius: where a disc's anchor is, seen from the centre
