@@ -119,27 +119,23 @@ def test_each_of_many_areas_meets_the_tone(kind, seed):
 @pytest.mark.parametrize(
     ("kind", "border", "seed"),
     [
-        ("light", "wall", 1),
-        ("middle", "wall", 2),
         ("dark", "wall", 1),
-        ("dark", "bleed", 2),
         ("darkest", "wall", 1),
         ("all", "automatic", 2),
         ("waves", "bleed", 2),
-        ("edges", "wall", 2),
     ],
 )
 def test_each_of_many_areas_between_walls_meets_the_tone(kind, border, seed):
-    document = divided(pictured(kind), 24, seed, n_dots=1000, border=border, iterations=6)
+    document = divided(pictured(kind), 12, seed, n_dots=600, border=border, iterations=4)
     process_now(document, list(document.drawing.areas))
-    assert_met(document, 10)
+    assert_met(document, 5)
 
 
-@settings(max_examples=3 * EXAMPLES, deadline=None)
+@settings(max_examples=2 * EXAMPLES, deadline=None)
 @given(st.integers(0, 10_000), st.sampled_from(["dark", "all", "waves"]))
 def test_areas_of_any_borders_meet_the_tone_beside_each_other(seed, kind):
     rng = np.random.default_rng(seed)
-    document = divided(pictured(kind), int(rng.integers(8, 24)), seed, n_dots=900, iterations=6)
+    document = divided(pictured(kind), int(rng.integers(6, 14)), seed, n_dots=600, iterations=4)
     areas = document.drawing.areas
     for k in areas:
         areas[k] = replace(areas[k], border=str(rng.choice(["wall", "through", "bleed", ""])))
@@ -302,7 +298,7 @@ def test_any_number_of_threads_gives_the_same_sizes(kind, border):
     np.testing.assert_array_equal(*found)
 
 
-@settings(max_examples=150 * EXAMPLES, deadline=None)
+@settings(max_examples=60 * EXAMPLES, deadline=None)
 @given(st.integers(0, 10**6), st.booleans(), st.booleans())
 def test_ink_of_discs_in_areas(seed, is_lattice, is_doubled):
     """Areas of unions, of any sizes, at one place or touching, on corners and edges, with holes."""
@@ -320,7 +316,7 @@ def test_ink_of_discs_in_areas(seed, is_lattice, is_doubled):
     if n_areas > 4:
         areas = [areas[0].union(areas[2]), *areas[3:]]  # two pieces, maybe; a gap
     laid, free = InkOfDiscs(areas, position, 1.02 * radius).laid(radius)
-    union = shapely.union_all(shapely.buffer(shapely.points(position), radius, quad_segs=256))
-    assert laid == pytest.approx([union.intersection(area).area for area in areas], abs=1e-3)
+    union = shapely.union_all(shapely.buffer(shapely.points(position), radius, quad_segs=128))
+    assert laid == pytest.approx([union.intersection(area).area for area in areas], abs=3e-3)
     assert (free >= 0.0).all()
     assert free.sum() <= union.length * 1.001
