@@ -204,6 +204,7 @@ def test_tooltips_come_at_rest_and_cover_no_neighbour(page) -> None:
 def test_a_tool_tells_its_name_as_soon_as_the_pointer_is_on_it(page) -> None:
     from imgui_bundle import imgui
 
+    imgui.get_style().hover_delay_normal = 60.0  # however long a frame takes
     page.host.move(*page.host.place("Spray dots"))
     for _ in range(3):
         page.app.step(0.0)

@@ -30,7 +30,8 @@ _EDITS = frozenset(
 
 
 _TOOLTIP_LATE_S = 0.01  # so that the frame that is to show it is not too early
-_TOOLTIP_SEEN_S = 0.12  # after that it is there
+_TOOLTIP_FRAMES = 4  # at rest, until it is there: ImGui takes note, measures it unseen, shows it
+_TOOLTIP_FRAME_S = 0.03
 
 
 def _context() -> imgui.internal.Context:
@@ -38,6 +39,17 @@ def _context() -> imgui.internal.Context:
     context = imgui.get_current_context()
     assert context is not None
     return context
+
+
+def _rest_left_s() -> float:
+    """Return how long the pointer has yet to rest where it is for a tooltip; 0 or less: no more."""
+    context, style = _context(), imgui.get_style()
+    return float(
+        max(
+            style.hover_delay_normal - context.hover_item_delay_timer,
+            style.hover_stationary_delay - context.mouse_stationary_timer,
+        )
+    )
 
 
 class Gui:
@@ -63,6 +75,7 @@ class Gui:
         self._scale = 0.0
         self.escape_level = 0
         self._holds_enter = False  # for a number that a chord has ended
+        self._n_rested = 0  # frames since the pointer has rested on a control for long enough
         self.numbers = Numbers()
         self.fields = Fields()
         self._context = imgui.create_context()
@@ -130,18 +143,11 @@ class Gui:
     @property
     def tooltip_in_s(self) -> float:
         """How long the pointer has yet to rest for a tooltip; 0 where none is to come."""
-        context, style = _context(), imgui.get_style()
-        if not context.hover_item_delay_id:
+        if not _context().hover_item_delay_id:
             return 0.0
-        left = max(
-            style.hover_delay_normal - context.hover_item_delay_timer,
-            style.hover_stationary_delay - context.mouse_stationary_timer,
-        )
-        if left > 0.0:
-            return float(left) + _TOOLTIP_LATE_S
-        # ImGui measures it, unseen, for a frame or two before it shows it
-        is_new = left > -max(_TOOLTIP_SEEN_S, imgui.get_io().delta_time)
-        return _TOOLTIP_SEEN_S / 4 if is_new else 0.0
+        if (left_s := _rest_left_s()) > 0.0:
+            return left_s + _TOOLTIP_LATE_S
+        return _TOOLTIP_FRAME_S if self._n_rested < _TOOLTIP_FRAMES else 0.0
 
     @property
     def wants_keys(self) -> bool:
@@ -201,12 +207,18 @@ class Gui:
             failure = error
         finally:
             imgui.end_frame()
+        self._count_rest()
         self.escape_level = 0
         if self._holds_enter:
             self._holds_enter = False
             feed(KeyUp("enter"), self._window.ratio)
         imgui.render()
         return failure
+
+    def _count_rest(self) -> None:
+        """Count frames, not time: one may come late, and the next is needed all the same."""
+        rests = bool(_context().hover_item_delay_id) and _rest_left_s() <= 0.0
+        self._n_rested = self._n_rested + 1 if rests else 0
 
     def draw(self) -> None:
         """Draw the frame into the framebuffer in use."""
