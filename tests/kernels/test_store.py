@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from stippler.kernels.machine import entry_ir, export, processor, store
+from stippler.kernels.machine.jit import inner
 
 pytestmark = pytest.mark.skipif(not store.can_load(), reason="no store is loaded here")
 
@@ -153,6 +154,32 @@ def test_several_numbers_come_back_as_a_tuple(entry):
     assert [type(value) for value in call(2.5, 7)] == [int, float, int, float, int]
     assert call(1e300, -(2**62)) == (-(2**62), 5e299, 2**62, 1e300, 1 - 2**62)
     assert abs(sys.getrefcount(tuple) - before) < 500
+
+
+@inner
+def twice(x):
+    return 2.0 * x
+
+
+def of_twice(x):
+    return twice(x) + 1.0
+
+
+def test_numba_loads_no_part_of_what_is_stored_and_can_go_on_with_it(entry, monkeypatch):
+    import numba
+    from numba.core import codegen
+
+    load, loaded = codegen.JITCPUCodegen._add_module, []
+
+    def counted(self, module):
+        loaded.append(module)
+        return load(self, module)
+
+    monkeypatch.setattr(codegen.JITCPUCodegen, "_add_module", counted)
+    assert entry(of_twice, 3.0)(3.0) == 7.0
+    assert loaded == []
+    assert numba.njit(of_twice)(3.0) == 7.0  # with the same part of it
+    assert loaded
 
 
 def test_what_an_entry_cannot_do_is_left_to_numba(entry):

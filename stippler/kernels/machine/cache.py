@@ -15,7 +15,9 @@ from pathlib import Path
 from platformdirs import user_cache_path
 
 _KERNELS = Path(__file__).parent.parent
-_PLUMBING = {"cache", "export", "numba_cache", "numba_import", "pool", "processor", "store"}
+_PLUMBING = {
+    "cache", "export", "numba_cache", "numba_import", "pool", "processor", "quick_numba", "store",
+}  # fmt: skip
 """Rooms beside this one that no machine code depends on."""
 
 _IMPORT = re.compile(r"^ *from stippler\.kernels\.([\w.]+) import", re.MULTILINE)

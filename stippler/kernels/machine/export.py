@@ -32,6 +32,7 @@ from stippler.kernels.machine.entry_ir import (
     UnsupportedError,
     entry_ir,
 )
+from stippler.kernels.machine.quick_numba import only_for_objects
 
 _KNOWN = {*DECLARATIONS, *store.MATH, *store.MEMORY, TABLE, "_GLOBAL_OFFSET_TABLE_"}
 _OURS = ("NRT_MemInfo_alloc_aligned", "NRT_MemInfo_call_dtor")
@@ -196,11 +197,10 @@ def _compiled(function: Any, options: dict[str, Any], kinds: tuple[Any, ...], sy
         typing, target = cpu_target.typing_context, cpu_target.target_context
         typing.refresh()
         target.refresh()
-        made = compiler.compile_extra(typing, target, function, kinds, None, flags, {})
-        library = made.library
-        if not library._finalized:
-            library.finalize()
-        module = library._final_module.clone()
+        with only_for_objects() as finish:
+            made = compiler.compile_extra(typing, target, function, kinds, None, flags, {})
+            finish(made.library)
+        module = made.library._final_module.clone()
     native = made.fndesc.llvm_func_name
     natives = [str(arg.type) for arg in module.get_function(native).arguments]
     entry = entry_ir(symbol, native, natives, kinds, made.signature.return_type)
