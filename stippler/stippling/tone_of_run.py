@@ -1,4 +1,4 @@
-"""Sizes of the areas that a run has made, by which each meets the tone beside all others."""
+"""Sizes of areas that were made or relaxed, by which each meets the tone beside all others."""
 
 from __future__ import annotations
 
@@ -9,11 +9,16 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from stippler.drawing.drawing import Drawing
+from stippler.drawing.partition import Outline, Partition
+from stippler.drawing.reference import Reference
+from stippler.drawing.style import Style
 from stippler.stippling.area_tone import ink_asked, sizes_of_areas
+from stippler.stippling.part_of_area import met_and_missed
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.progress import Progress
 from stippler.stippling.style_tone import curves_of
-from stippler.stippling.tasks import AreaTask
+from stippler.stippling.tasks import AreaTask, white_areas
 
 Finished: TypeAlias = tuple[tuple[int, Progress], ...]
 
@@ -62,9 +67,12 @@ def _sized(
         rows[k] = slice(first, first + len(one.radius_mm))
         area_of_dot[rows[k]] = number.get(k, -1)
         first += len(one.radius_mm)
+    reference = tasks[0].task.reference
+    assert reference is not None, "areas are stippled from a picture"
+    styles = [one.task.style for one in tasks for _ in one.outlines]
     found = sizes_of_areas(
         list(outlines.values()),
-        _asked(tasks),
+        _asked(reference, list(outlines.values()), styles),
         position,
         radii,
         area_of_dot,
@@ -97,14 +105,51 @@ def _others(
     return np.concatenate(position)[first], np.concatenate(radius)[first]
 
 
-def _asked(tasks: Sequence[AreaTask]) -> NDArray[np.float64]:
+def sized_again(
+    drawing: Drawing,
+    position_mm: NDArray[np.float64],
+    radius_mm: NDArray[np.float32],
+    is_solved: NDArray[np.bool_],
+) -> NDArray[np.float32]:
+    """Return sizes of a drawing's dots that were moved, by which their areas meet the tone.
+
+    Parameters
+    ----------
+    position_mm : (n, 2) float64, radius_mm : (n,) float32
+        Of all its dots, as they are now.
+    is_solved : (n,) bool
+        Those whose sizes were solved there, and may change.
+    """
+    dots, reference, partition = drawing.dots, drawing.reference, Partition(drawing.outlines())
+    areas = np.unique(dots.area[is_solved]).tolist()
+    parts = {k: partition.part_of(k) for k in areas if k in drawing.areas}
+    outlines, _ = met_and_missed(drawing, parts)
+    radii = radius_mm.astype(np.float64)
+    for is_white in (False, True):
+        mine = [k for k in outlines if drawing.style_of(k).is_inverse == is_white]
+        if not mine or reference is None:
+            continue
+        alike = np.isin(dots.area, white_areas(drawing)) == is_white
+        number = np.full(max(int(dots.area.max()), *mine) + 2, -1)
+        number[mine] = np.arange(len(mine))
+        limits = radii[is_solved & alike].min(), radii[is_solved & alike].max()
+        radii[alike] = sizes_of_areas(
+            [outlines[k] for k in mine],
+            _asked(reference, [outlines[k] for k in mine], [drawing.style_of(k) for k in mine]),
+            position_mm[alike],
+            radii[alike],
+            np.where(is_solved, number[dots.area], -1)[alike],
+            np.tile(limits, (len(mine), 1)),
+        )
+    return np.where(radii == radius_mm, radius_mm, radii.astype(np.float32))
+
+
+def _asked(
+    reference: Reference, outlines: Sequence[Outline], styles: Sequence[Style]
+) -> NDArray[np.float64]:
     """Return how much ink each area asks for, by the picture as its style sees it."""
-    outlines = [outline for one in tasks for outline in one.outlines.values()]
-    styles = [one.task.style for one in tasks for _ in one.outlines]
-    reference = tasks[0].task.reference
-    assert reference is not None, "areas are stippled from a picture"
-    curves = {(s.tone_white, s.tone_black, s.tone_gamma, s.tone_deepest): s for s in styles}
+    keys = [(s.tone_white, s.tone_black, s.tone_gamma, s.tone_deepest) for s in styles]
+    curves = dict(zip(keys, (curves_of(style) for style in styles), strict=True))
     tables = {key: k for k, key in enumerate(curves)}
-    which = [tables[s.tone_white, s.tone_black, s.tone_gamma, s.tone_deepest] for s in styles]
-    field = PictureField.of(reference, [curves_of(s) for s in curves.values()], which)
-    return ink_asked(outlines, field)
+    which = [tables[key] for key in keys]
+    return ink_asked(outlines, PictureField.of(reference, list(curves.values()), which))

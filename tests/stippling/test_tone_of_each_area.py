@@ -17,6 +17,7 @@ from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.files.read.picture import read_picture
 from stippler.jobs.processing import process_now, tasks_of
+from stippler.jobs.stippling import relax_drawing
 from stippler.kernels.machine import pool
 from stippler.resources import assets
 from stippler.stippling.area_tone import InkOfDiscs
@@ -240,6 +241,31 @@ def test_areas_of_other_styles_meet_the_tone_beside_each_other():
             assert ink == pytest.approx(asked(toned(drawing.reference, style), part), rel=0.005)
             met += 1
     assert met > 6
+
+
+@pytest.mark.parametrize(("kind", "border"), [("dark", "wall"), ("waves", "through")])
+def test_areas_that_are_relaxed_meet_the_tone(kind, border):
+    document = divided(pictured(kind), 10, 5, n_dots=800, iterations=3, border=border)
+    process_now(document, list(document.drawing.areas))
+    by_hand = np.flatnonzero(document.dots.area == 2)[:2]
+    document.begin("Size")
+    document.change("radius_mm", by_hand, np.full(2, 0.3, np.float32))
+    document.commit()
+    for areas in (None, [1, 2, 3, 4]):
+        before = document.dots.radius_mm.copy()
+        style = document.drawing.styles[0]
+        *_, last = relax_drawing(document.drawing, style, 4, areas)
+        document.begin_run("Relax")
+        document.merge(last.moved_mm)
+        document.merge_radii(last.radius_mm)
+        document.end_run()
+        moved = document.dots.radius_mm != before
+        assert moved.any()
+        assert areas is None or set(document.dots.area[moved].tolist()) <= set(areas)
+        assert (document.dots.radius_mm[by_hand] == np.float32(0.3)).all()
+        off = [off for off, n in errors(document, areas or ()).values() if n >= MANY]
+        assert len(off) >= 3
+        assert np.abs(off).max() < 0.005
 
 
 def solved(document: Document) -> tuple[np.ndarray, np.ndarray]:
