@@ -13,6 +13,7 @@ from shapely.geometry import Point, box
 from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.pattern import Pattern
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.files.read.picture import read_picture
@@ -21,6 +22,8 @@ from stippler.jobs.stippling import relax_drawing
 from stippler.kernels.machine import pool
 from stippler.resources import assets
 from stippler.stippling.area_tone import InkOfDiscs
+from stippler.stippling.part_of_area import part_for_dots
+from stippler.stippling.patterns import builtin
 from stippler.stippling.pipeline import run
 from stippler.stippling.style_tone import toned
 from tests.conftest import EXAMPLES
@@ -241,6 +244,25 @@ def test_areas_of_other_styles_meet_the_tone_beside_each_other():
             assert ink == pytest.approx(asked(toned(drawing.reference, style), part), rel=0.005)
             met += 1
     assert met > 6
+
+
+def test_polygons_of_a_pattern_meet_the_tone_and_so_does_their_area():
+    document = divided(pictured("darkest"), 1, 1, n_dots=3000, iterations=6)
+    drawing = document.drawing
+    drawing.areas[1] = Area("wall", box(10, 5, 50, 35), 0)
+    drawing.patterns[1] = Pattern.over(1, builtin("bricks"), (10, 5, 50, 35), 60.0)
+    document = Document(drawing)
+    process_now(document, [0, 1])
+    dots = document.dots
+    whole = part_for_dots(drawing, 1, document.partition.part_of(1))
+    met = 0
+    for part in (whole, *whole.geoms):
+        n = shapely.intersects_xy(part, *dots.position_mm.T).sum()
+        if n >= MANY:
+            ink = laid(dots.position_mm, dots.radius_mm.astype(float), part)
+            assert ink == pytest.approx(asked(drawing.reference, part), rel=0.005)
+            met += 1
+    assert met > 10
 
 
 @pytest.mark.parametrize(("kind", "border"), [("dark", "wall"), ("waves", "through")])
