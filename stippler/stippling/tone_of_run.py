@@ -16,6 +16,7 @@ from stippler.drawing.partition import Outline, Partition
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.stippling.area_tone import ink_asked, sizes_of_areas
+from stippler.stippling.border_policies import BorderPolicies
 from stippler.stippling.part_of_area import met_and_missed
 from stippler.stippling.picture_field import PictureField
 from stippler.stippling.progress import Progress
@@ -73,7 +74,8 @@ def _sized(
             first = rows[k].stop
             if k in task.outlines:
                 limits = one.limits_mm or (0.0, 0.0)
-                unit = units.add(task.outlines[k], one.position_mm, task.task.style, limits)
+                kind = task.task.style, limits, task.meets_others
+                unit = units.add(task.outlines[k], one.position_mm, *kind)
                 unit_of_dot[rows[k]] = -1 if one.limits_mm is None else unit
     reference = tasks[0].task.reference
     assert reference is not None, "areas are stippled from a picture"
@@ -124,6 +126,7 @@ def sized_again(
     areas = np.unique(dots.area[is_solved]).tolist()
     parts = {k: partition.part_of(k) for k in areas if k in drawing.areas}
     outlines, _ = met_and_missed(drawing, parts)
+    seeing = BorderPolicies(drawing, partition).seeing
     radii, reference = radius_mm.astype(np.float64), drawing.reference
     for is_white in (False, True):
         mine = [k for k in outlines if drawing.style_of(k).is_inverse == is_white]
@@ -135,8 +138,9 @@ def sized_again(
         for k in mine:
             rows = np.flatnonzero(is_solved & (dots.area == k))
             unit_of_dot[rows] = units.add(
-                outlines[k], position_mm[rows], drawing.style_of(k), (sizes.min(), sizes.max())
-            )
+                outlines[k], position_mm[rows], drawing.style_of(k), (sizes.min(), sizes.max()),
+                k in seeing,
+            )  # fmt: skip
         radii[alike] = units.sized(reference, position_mm[alike], radii[alike], unit_of_dot[alike])
     return np.where(radii == radius_mm, radius_mm, radii.astype(np.float32))
 
@@ -146,12 +150,23 @@ class _Units:
 
     def __init__(self) -> None:
         self._outlines, self._styles = list[Outline](), list[Style]()
-        self._limits = list[tuple[float, float]]()
+        self._limits, self._is_cut = list[tuple[float, float]](), list[bool]()
 
     def add(
-        self, outline: Outline, position_mm: Floats, style: Style, limits: tuple[float, float]
+        self,
+        outline: Outline,
+        position_mm: Floats,
+        style: Style,
+        limits: tuple[float, float],
+        is_cut: bool,
     ) -> Rows:
-        """Add an area; return in which unit each of its dots lies, -1 where in none."""
+        """Add an area; return in which unit each of its dots lies, -1 where in none.
+
+        Parameters
+        ----------
+        is_cut : bool
+            Whether cells of its dots may go on beyond its border.
+        """
         polygons, first = shapely.get_parts(outline), len(self._outlines)
         unit_of_dot = np.full(len(position_mm), first)
         parts = [outline]
@@ -168,6 +183,7 @@ class _Units:
         self._outlines += parts
         self._styles += [style] * len(parts)
         self._limits += [limits] * len(parts)
+        self._is_cut += [is_cut] * len(parts)
         return unit_of_dot
 
     def sized(
@@ -178,7 +194,7 @@ class _Units:
             return radii
         return sizes_of_areas(
             self._outlines, self._asked(reference), position_mm, radii, unit_of_dot,
-            np.array(self._limits),
+            np.array(self._limits), np.array(self._is_cut),
         )  # fmt: skip
 
     def _asked(self, reference: Reference) -> Floats:

@@ -21,7 +21,7 @@ from stippler.jobs.processing import process_now, tasks_of
 from stippler.jobs.stippling import relax_drawing
 from stippler.kernels.machine import pool
 from stippler.resources import assets
-from stippler.stippling.area_tone import InkOfDiscs
+from stippler.stippling.area_tone import Borders, InkOfDiscs
 from stippler.stippling.part_of_area import part_for_dots
 from stippler.stippling.patterns import builtin
 from stippler.stippling.pipeline import run
@@ -363,7 +363,8 @@ def test_ink_of_discs_in_areas(seed, is_lattice, is_doubled):
     areas[0] = areas[0].difference(areas[0].representative_point().buffer(0.3, quad_segs=3))
     if n_areas > 4:
         areas = [areas[0].union(areas[2]), *areas[3:]]  # two pieces, maybe; a gap
-    laid, free = InkOfDiscs(areas, position, 1.02 * radius).laid(radius)
+    borders = Borders(areas, position, 1.02 * radius)
+    laid, free = InkOfDiscs(borders, np.ones(len(areas), np.bool_)).laid(radius)
     union = shapely.union_all(shapely.buffer(shapely.points(position), radius, quad_segs=128))
     assert laid == pytest.approx([union.intersection(area).area for area in areas], abs=3e-3)
     assert (free >= 0.0).all()
