@@ -60,7 +60,7 @@ def laid(position, radius, part: shapely.Geometry) -> float:
     """Return how much of a part of the page discs cover, in mm²."""
     near = shapely.dwithin(shapely.points(position), part, radius)
     discs = shapely.buffer(shapely.points(position[near]), radius[near] * 1.0001, quad_segs=48)
-    return shapely.union_all(discs).intersection(part).area
+    return shapely.disjoint_subset_union_all(discs).intersection(part).area
 
 
 def errors(document: Document) -> dict[int, tuple[float, int]]:
