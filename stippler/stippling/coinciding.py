@@ -22,11 +22,17 @@ def part_coinciding(
 ) -> None:
     """Move free dots off dots that were given before them at the same place, in `xy`."""
     x = np.sort(xy[:, 0])
-    if (x[1:] > x[:-1]).all():
+    shared = x[1:][x[1:] == x[:-1]]
+    if not len(shared):
         return
-    order = np.lexsort((xy[:, 1], xy[:, 0], compartment_of_dot))  # stable: as given in groups
-    same = (xy[order[1:]] == xy[order[:-1]]).all(axis=1)
-    same &= compartment_of_dot[order[1:]] == compartment_of_dot[order[:-1]]
+    at = np.minimum(np.searchsorted(shared, xy[:, 0]), len(shared) - 1)
+    some = np.flatnonzero(shared[at] == xy[:, 0])
+    x, y, owner = xy[some, 0], xy[some, 1], compartment_of_dot[some]
+    order = np.lexsort((y, x, owner))  # stable: as given in groups
+    x, y, owner, order = x[order], y[order], owner[order], some[order]
+    same = (x[1:] == x[:-1]) & (y[1:] == y[:-1]) & (owner[1:] == owner[:-1])
+    if not same.any():
+        return
     group = np.concatenate([[0], np.cumsum(~same)])
     sizes = np.bincount(group)
     ends = np.cumsum(sizes)

@@ -76,7 +76,8 @@ def fit_radii(
     """Solve the radius of each dot for the ink its cell asks for, within ``low..high``.
 
     Dots that ask for the same as `before` are left as they are. `left` gets the ink that the
-    range did not allow: above 0 missing, below 0 too much.
+    range did not allow: above 0 missing, below 0 too much; 0 where the radius meets what is asked,
+    or nearly so.
     """
     for i in range(start, stop):
         begin, end = first[i], first[i + 1]
@@ -106,7 +107,8 @@ def fit_radii(
             if (r == low and area >= q) or (r == high and area <= q):
                 break
         radii[i] = r
-        left[i] = q - area
+        is_met = (low < r < high) or abs(area - q) <= 1e-7 * abs(q)
+        left[i] = 0.0 if is_met else q - area
 
 
 @kernel
