@@ -1,4 +1,4 @@
-"""What borders of areas cost, and how true areas that see through are: ratios, in turns."""
+"""What borders of areas cost, in ratios, in turns; and how true the tone of small areas is."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def figures(*, quick: bool = False) -> list[Figure]:
     """Measure processor time of the whole way from picture to sizes."""
     n_dots, repeats = (2_000, 2) if quick else (10_000, 9)
     return [*edge_figures(n_dots, repeats), *long_figures(n_dots, repeats),
-            *seen_through_figures(n_dots, repeats)]  # fmt: skip
+            *seen_through_figures(n_dots, repeats), wall_figure(n_dots)]  # fmt: skip
 
 
 def edge_figures(n_dots: int, repeats: int) -> list[Figure]:
@@ -52,21 +52,33 @@ def seen_through_figures(n_dots: int, repeats: int) -> list[Figure]:
     """Time many areas that see through against one page; tell how true small ones are."""
     runs = [_processing(n_dots, n) for n in (n_dots // 50, 1)]
     small = divided(n_dots, n_dots // 40)
-    process_now(small, list(small.drawing.areas))
-    off = [_off(small, k) for k in small.drawing.areas if _number(small, k) >= _MANY]
-    note = f"{len(off)} of 30 to {max(_number(small, k) for k in small.drawing.areas)} dots"
     return [
         _over(f"{n_dots // 50} areas that see through, over one", runs, repeats, None),
-        Figure("tone of small areas that see through, at worst", 100.0 * max(off), "% of its ink",
-               0.5, note=note),
-    ]  # fmt: skip
+        _tone_figure("tone of small areas that see through, at worst", small),
+    ]
 
 
-def divided(n_dots: int, n_areas: int) -> Document:
-    """Return a page of areas that see through their borders, without dots yet."""
-    style = Style(n_dots=n_dots, border="through")
+def wall_figure(n_dots: int) -> Figure:
+    """Tell how true small dark areas are between walls, over which their dots reach."""
+    small = divided(n_dots, n_dots // 40, "wall", picture(0.6, 0.9))
+    return _tone_figure("tone of small dark areas between walls, at worst", small)
+
+
+def _tone_figure(name: str, document: Document) -> Figure:
+    areas = document.drawing.areas
+    process_now(document, list(areas))
+    off = [_off(document, k) for k in areas if _number(document, k) >= _MANY]
+    note = f"{len(off)} of 30 to {max(_number(document, k) for k in areas)} dots"
+    return Figure(name, 100.0 * max(off), "% of its ink", 0.5, note=note)
+
+
+def divided(
+    n_dots: int, n_areas: int, border: str = "through", reference: Reference | None = None
+) -> Document:
+    """Return a page of areas with one kind of borders, without dots yet."""
+    style = Style(n_dots=n_dots, border=border)
     nothing = np.empty((0, 2)), np.empty(0, np.float32)
-    drawing = Drawing.from_reference(picture(), *nothing, style)
+    drawing = Drawing.from_reference(reference or picture(), *nothing, style)
     page = shapely.box(0.0, 0.0, W, H)
     seeds = shapely.multipoints(np.random.default_rng(4).random((n_areas, 2)) * (W, H))
     cells = shapely.voronoi_polygons(seeds, extend_to=page).geoms
@@ -75,9 +87,9 @@ def divided(n_dots: int, n_areas: int) -> Document:
     return Document(drawing)
 
 
-def picture() -> Reference:
+def picture(light: float = 0.25, dark: float = 0.5) -> Reference:
     """Return a ramp, dark enough for dots at the page's edge."""
-    return Reference(np.tile(np.linspace(0.25, 0.5, 480, dtype=np.float32), (320, 1)), W)
+    return Reference(np.tile(np.linspace(light, dark, 480, dtype=np.float32), (320, 1)), W)
 
 
 def _stippling(style: Style, part: shapely.Polygon | None = None) -> Callable[[], float]:

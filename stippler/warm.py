@@ -147,15 +147,24 @@ def parts() -> Iterator[tuple[str, Callable[[], object]]]:
 
 
 def _stipple_an_area(reference: Reference) -> None:
+    import numpy as np
     from shapely.geometry import Polygon, box
 
+    from stippler.drawing.area import Area
+    from stippler.drawing.document import Document
+    from stippler.drawing.drawing import Drawing
     from stippler.drawing.style import Style
-    from stippler.stippling.pipeline import run
-    from stippler.stippling.task import Task
+    from stippler.jobs.processing import process_now
 
+    drawing = Drawing.from_reference(
+        reference, np.empty((0, 2)), np.empty(0, np.float32), Style(n_dots=300, iterations=3)
+    )
     part = Polygon([(2, 2), (18, 5), (9, 9), (12, 18)])
-    halves = part & box(0, 0, 10, 20), part & box(10, 0, 20, 20)
-    list(run(Task(Style(n_dots=100, iterations=3), reference, parts_mm=(part,), areas_mm=halves)))
+    for k, half in enumerate((part & box(0, 0, 10, 20), part & box(10, 0, 20, 20)), start=1):
+        drawing.areas[k] = Area(f"half {k}", half, 0)
+    document = Document(drawing)
+    process_now(document, [0, 1, 2])
+    process_now(document, [1])
 
 
 def _bend_and_adhere() -> None:

@@ -392,6 +392,27 @@ class Document:
         else:
             self._renewed()
 
+    @property
+    def draft_ids(self) -> NDArray[np.int64]:
+        """The dots of the draft, in the order in which they were given; none without one."""
+        return np.empty(0, np.int64) if self._draft is None else self._draft.ids
+
+    def draft_sizes(self, ids: NDArray[np.int64], old_mm: NDArray[np.float32],
+                    new_mm: NDArray[np.float32]) -> None:  # fmt: skip
+        """Give other dots than the draft's new sizes as a part of it; ignored where there is none.
+
+        Those that are gone, locked, or no longer of the old size stay as they are.
+        """
+        if self._draft is None:
+            return
+        rows = self.rows(ids)
+        stays = rows < 0
+        stays[~stays] = (self.dots.radius_mm[rows[~stays]] != old_mm[~stays]) | ~self._yielding(
+            rows[~stays]
+        )
+        self._draft.size_others(rows[~stays], new_mm[~stays])
+        self._note(rows[~stays], rows[~stays], moved=False)
+
     def end_draft(self) -> Edit | None:
         """End the draft; it is one step, or how the drawing begins where nothing was there."""
         if self._draft is None:

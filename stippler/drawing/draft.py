@@ -50,6 +50,11 @@ class Draft:
         self._n_others = len(store)
 
     @property
+    def ids(self) -> NDArray[np.int64]:
+        """Those of its dots, in the order in which they were given."""
+        return self._store.dots.id[self._n_others :].copy()
+
+    @property
     def n_dots(self) -> int:
         """How many dots it has so far."""
         return len(self._store) - self._n_others
@@ -79,6 +84,10 @@ class Draft:
         store.append(replace(dots, id=store.new_ids(n)))
         return False
 
+    def size_others(self, rows: Rows, radius_mm: NDArray[np.float32]) -> None:
+        """Give dots that are not its own other sizes as a part of it."""
+        self._recorder.change("radius_mm", rows, radius_mm)
+
     def _hold(self, holding: Holding) -> None:
         """Let lines hold the dots."""
         curve, along_mm = holding.curve, holding.along_mm
@@ -95,7 +104,7 @@ class Draft:
         """Return the edit that it amounts to."""
         if turns_with_edges(self._style):
             self._turn_again()
-        self._recorder.note_inserted(self._store.dots.id[self._n_others :].copy())
+        self._recorder.note_inserted(self.ids)
         return self._recorder.finish()
 
     def _turn_again(self) -> None:

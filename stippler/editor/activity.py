@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
@@ -11,6 +12,9 @@ from stippler.editor.messages import WARNING, Messages
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from stippler.drawing.document import Document
     from stippler.drawing.drawing import Page
@@ -290,20 +294,29 @@ class Processing(Job):
         How many of them are done, each as a step of its own.
     drafting : int or None
         The one that is being made.
+    taken : dict of (ids, Progress) by area
+        The dots that those have been given.
     """
 
     source: Source | None
     areas: tuple[int, ...]
     n_taken: int = 0
     drafting: int | None = None
+    taken: dict[int, tuple[NDArray[np.int64], Progress]] = field(default_factory=dict)
 
     def take(self, desk: Desk, work: Work) -> Activity:
-        """Keep the areas that are done since the last result, and show the one that is made."""
+        """Keep the areas that are done since the last result, and show the one that is made.
+
+        Sizes that are found anew beside an area are a part of its step.
+        """
         self._note(work)
         if desk.document is None:
             return self
-        for area, made in work.finished[self.n_taken :]:
+        known, new = work.finished[: self.n_taken], work.finished[self.n_taken :]
+        for area, made in new:
             self._show(desk.document, area, made)
+            self._size_again(desk.document, known)
+            self.taken[area] = desk.document.draft_ids, made
             desk.document.end_draft()
             self.drafting, self.n_taken = None, self.n_taken + 1
             _warn(desk, made, f"area {desk.document.drawing.areas[area].name!r}")
@@ -326,6 +339,13 @@ class Processing(Job):
             begin(document, area)
             self.drafting = area
         document.draft(made.position_mm, made.radius_mm, made.holding)
+
+    def _size_again(self, document: Document, known: Sequence[tuple[int, Progress]]) -> None:
+        for area, made in known:
+            ids, before = self.taken[area]
+            if made is not before:
+                document.draft_sizes(ids, before.radius_mm, made.radius_mm)
+                self.taken[area] = ids, made
 
 
 Activity = Idle | Opening | Readying | Reopening | Making | Relaxing | Filling | Processing

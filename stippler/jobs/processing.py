@@ -41,7 +41,7 @@ def tasks_of(document: Document, areas: Sequence[int]) -> tuple[list[AreaTask], 
         near = None
         if all(k in drawing.areas for k in group):
             part = part_of_all(partition, group)
-            near = None if part.is_empty else document.in_box(box_around(part))
+            near = None if part.is_empty else document.in_box(box_around(part, drawing))
         try:
             tasks.append(stippling(drawing, group, partition, near, policies))
         except GeometryError as error:
@@ -54,17 +54,25 @@ def tasks_of(document: Document, areas: Sequence[int]) -> tuple[list[AreaTask], 
 def process_areas(tasks: Sequence[AreaTask], *, snapshots: bool = True) -> Iterator[Work]:
     """Stipple areas one after the other; each result tells of all that are done.
 
-    New dots keep clear of those that were made just before, too.
+    New dots keep clear of those that were made just before, too. Once all are made, sizes of areas
+    whose tone is off, for others' dots reach into them, are found anew; so results may tell of
+    other sizes of areas that were done before. Areas that see others do not wait for that.
     """
     from stippler.stippling.pipeline import run
     from stippler.stippling.progress import DONE
+    from stippler.stippling.tone_of_run import sized
 
     finished: tuple[tuple[int, Progress], ...] = ()
-    for one in tasks:
+    for k, one in enumerate(tasks):
         for progress in run(_beside(one, finished), snapshots=snapshots):
+            area, shown = one.of_first(progress)
             if progress.stage == DONE:
                 finished = (*finished, *one.of_each(progress))
-            area, shown = one.of_first(progress)
+                if k + 1 == len(tasks):
+                    finished = sized(tasks, finished)
+                elif one.meets_others:
+                    finished = sized([t for t in tasks[: k + 1] if t.is_beside(one)], finished)
+                shown = dict(finished)[area]
             yield Work(progress.stage, progress.done, progress.total, progress=shown,
                        area=area, finished=finished)  # fmt: skip
 

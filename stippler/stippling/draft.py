@@ -41,6 +41,8 @@ class Draft:
         What the ink falls short of, once it is known.
     holding : Holding or None
         Which lines hold dots, once some have lined up.
+    is_sized : bool
+        Whether sizes were solved, within a range.
     """
 
     task: Task
@@ -51,6 +53,7 @@ class Draft:
     stand: Floats = field(default_factory=lambda: np.empty((0, 2)))
     shortfall: Shortfall | None = None
     holding: Holding | None = None
+    is_sized: bool = False
 
     @classmethod
     def of(cls, task: Task) -> Draft:
@@ -118,7 +121,9 @@ class Draft:
             (x0, y0, x1, y1), (x, y) = lack.box_mm, self.ground.origin_mm
             lack = replace(lack, box_mm=(x0 + x, y0 + y, x1 + x, y1 + y))
         made = self._on_page(*self.shown())
-        return Progress(DONE, 1, 1, *made, shortfall=lack, holding=self.holding)
+        rule, pixel = self.raster.rule, self.raster.pixel_mm
+        limits = (rule.radius_min * pixel, rule.radius_max * pixel) if self.is_sized else None
+        return Progress(DONE, 1, 1, *made, shortfall=lack, holding=self.holding, limits_mm=limits)
 
     def _on_page(
         self, points: Floats, radii: Floats

@@ -114,40 +114,8 @@ def radii(draft: Draft, watched: bool) -> Iterator[Step]:
     if is_long and len(points) and draft.raster.rule.varies:
         _for_long_dots(draft, points, sizes)
     draft.radii = sizes.radii[n:]
-    if draft.task.areas_mm and len(draft.points) and not is_long:
-        draft.radii = _by_area(draft, sizes)
-
-
-def _by_area(draft: Draft, sizes: Sizes) -> Floats:
-    """Return sizes by which each area of the task meets the tone, and not only all together."""
-    from stippler.stippling.area_tone import sizes_of_areas
-
-    task, ground, pixel = draft.task, draft.ground, draft.raster.pixel_mm
-    corner = np.array(ground.origin_mm)
-    n_there = len(sizes.radii) - len(draft.points)  # the last of these stand in the area itself
-    first, n = len(draft.stand), len(draft.stand) + len(draft.points)
-    position = [draft.stand * pixel, draft.points * pixel]
-    radius = [np.empty(0), sizes.radii[n_there:] * pixel]
-    if task.standing is not None:
-        radius[0] = task.standing.radius_mm.astype(np.float64)
-    if task.neighbours_mm is not None and task.neighbours_radius_mm is not None:
-        position.append(task.neighbours_mm - corner)
-        radius.append(task.neighbours_radius_mm.astype(np.float64))
-    at, radius_mm = np.concatenate(position), np.concatenate(radius)
-    moved = np.zeros(len(at), np.bool_)
-    moved[first:n] = True
-
-    def ink(radius_mm: Floats) -> Floats:
-        in_px = np.concatenate((sizes.radii[: n_there - first], radius_mm[:n] / pixel))
-        laid = np.zeros(len(at))
-        laid[:n] = sizes.ink(in_px)[n_there - first :] * pixel**2
-        return laid
-
-    areas = [shapely.transform(area, lambda xy: xy - corner) for area in task.areas_mm]
-    limits = draft.raster.rule.radius_min * pixel, draft.raster.rule.radius_max * pixel
-    found = sizes_of_areas(areas, at, radius_mm, ink, moved, limits, ground.tone_field())
-    changed = found[moved] != radius_mm[moved]
-    return np.where(changed, found[moved] / pixel, sizes.radii[n_there:])
+    if draft.raster.rule.radius_min < draft.raster.rule.radius_max and not is_long:
+        draft.is_sized = True
 
 
 def _told(making: Making) -> Generator[Step, None, Tessellation]:

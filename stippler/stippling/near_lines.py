@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import shapely
@@ -15,6 +16,9 @@ from stippler.kernels.lines.nearest import find_nearest, list_segments
 from stippler.kernels.machine.pool import parallel_for
 
 Floats = NDArray[np.float64]
+
+Grid: TypeAlias = tuple[float, float, float, int, int, NDArray[np.int64], NDArray[np.int64]]
+"""x and y of its corner, side of a cell, columns, rows; where each cell's list begins, and it."""
 
 _MOST_CELLS = 250_000
 _LEAST = 1e-300
@@ -60,22 +64,7 @@ class NearLines:
         length2 = np.maximum((step * step).sum(axis=1), _LEAST)
         self._inverse, self._direction = 1.0 / length2, step / np.sqrt(length2)[:, None]
         self.reach = reach
-        self._fill(np.full(len(self._segments), reach))
-
-    def _fill(self, far: Floats) -> None:
-        ends = self._segments[:, :4].reshape(-1, 2)
-        low = ends.min(axis=0, initial=0.0 if not len(ends) else np.inf) - self.reach
-        high = ends.max(axis=0, initial=0.0 if not len(ends) else -np.inf) + self.reach
-        width, height = (high - low).tolist()
-        cell = max(0.5 * self.reach, math.sqrt(width * height / _MOST_CELLS), _LEAST)
-        columns, rows = int(width // cell) + 1, int(height // cell) + 1
-        grid = (float(low[0]), float(low[1]), cell, columns, rows)
-        start = np.zeros(columns * rows + 1, np.int64)
-        list_segments(self._segments, far, *grid, start, np.empty(0, np.int64), True)
-        start = np.cumsum(start)
-        listed = np.empty(start[-1], np.int64)
-        list_segments(self._segments, far, *grid, start.copy(), listed, False)
-        self._grid = (self._segments, *grid, start, listed)
+        self._grid = (self._segments, *_listed(self._segments, reach))
 
     def nearest(self, points: Floats) -> Nearest:
         """Return the place nearest to each point."""
@@ -90,6 +79,27 @@ class NearLines:
         line[near] = self._line_of[which[near]]
         direction[near] = self._direction[which[near]]
         return Nearest(line, along, np.where(near, away, np.inf), feet, direction)
+
+
+def in_grid(edges: Floats, reach: float) -> Grid:
+    """List edges (m, 4) by the cells of a grid that they come within reach of."""
+    return _listed(np.hstack([edges, np.zeros_like(edges)]), reach)
+
+
+def _listed(segments: Floats, reach: float) -> Grid:
+    ends = segments[:, :4].reshape(-1, 2)
+    low = ends.min(axis=0, initial=0.0 if not len(ends) else np.inf) - reach
+    high = ends.max(axis=0, initial=0.0 if not len(ends) else -np.inf) + reach
+    width, height = (high - low).tolist()
+    cell = max(0.5 * reach, math.sqrt(width * height / _MOST_CELLS), _LEAST)
+    columns, rows = int(width // cell) + 1, int(height // cell) + 1
+    grid = (float(low[0]), float(low[1]), cell, columns, rows)
+    far, start = np.full(len(segments), reach), np.zeros(columns * rows + 1, np.int64)
+    list_segments(segments, far, *grid, start, np.empty(0, np.int64), True)
+    start = np.cumsum(start)
+    listed = np.empty(start[-1], np.int64)
+    list_segments(segments, far, *grid, start.copy(), listed, False)
+    return (*grid, start, listed)
 
 
 def _segments(at: Floats) -> Floats:

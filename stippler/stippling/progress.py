@@ -44,6 +44,8 @@ class Progress:
         On "done".
     holding : Holding or None
         Which of the drawing's lines hold the dots then.
+    limits_mm : (float, float) or None
+        On "done": the range in which radii were solved for the tone; None where they were not.
     """
 
     stage: str
@@ -54,6 +56,7 @@ class Progress:
     movement_mm: float = math.nan
     shortfall: Shortfall | None = None
     holding: Holding | None = None
+    limits_mm: tuple[float, float] | None = None
 
 
 def notes_on(result: Progress, what: str = "page") -> tuple[str, ...]:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stippler.kernels.machine.pool import parallel_for
-from stippler.kernels.tone.ink_of_areas import ink_in_cells
 from stippler.kernels.tone.radii import (
     compare_sizes,
     even_sizes,
@@ -90,15 +89,6 @@ class Sizes:
             self.pass_on(low, high)
             self.fit(low, high)
         yield 1.0
-
-    def ink(self, radii: Floats) -> Floats:
-        """Return what dots of these sizes lay down within their cells, (n,)."""
-        cells, n, laid = self._cells, len(radii), np.empty(len(radii))
-        everyone = np.arange(n)
-        parallel_for(
-            ink_in_cells, n, cells.start, cells.corner, cells.following, everyone, radii, laid
-        )
-        return laid
 
     def fit(self, low: float, high: float) -> None:
         """Find radii within a range, and the ink `left` that it does not allow."""

@@ -114,8 +114,6 @@ class Task:
         Over which pieces of the border dots run off onto which neighbours.
     lines : MetLines or None
         What the standing dots line up on while they are moved.
-    areas_mm : tuple of shapely Polygon or MultiPolygon
-        Areas that are drawn as one, or one that sees others: the tone of each is to be met.
     """
 
     style: Style
@@ -131,4 +129,3 @@ class Task:
     seen_mm: tuple[Seen, ...] = ()
     bleeds_onto_mm: tuple[Seen, ...] = ()
     lines: MetLines | None = None
-    areas_mm: tuple[Polygon | MultiPolygon, ...] = ()

@@ -172,14 +172,33 @@ class AreaTask:
     task : Task
     neighbour_area : (m,) int32
         Which areas the neighbours of its dots are in.
+    neighbour_row : (m,) int
+        Which dots of the drawing these are.
     partition : Partition
         Says whose the dots of several areas are.
+    outlines : dict of polygon by area
+        What each has of the place that dots may lie in; areas without any are left out.
+    white_areas : list of int
+        Of all areas of the drawing those whose dots are white.
     """
 
     areas: tuple[int, ...]
     task: Task
     neighbour_area: NDArray[np.int32]
+    neighbour_row: Rows
     partition: Partition
+    outlines: dict[int, Outline]
+    white_areas: list[int]
+
+    @property
+    def meets_others(self) -> bool:
+        """Whether it is of several areas, or of one that sees others or bleeds onto them."""
+        return len(self.areas) > 1 or bool(self.task.seen_mm or self.task.bleeds_onto_mm)
+
+    def is_beside(self, other: AreaTask) -> bool:
+        """Whether the boxes around the areas of two tasks meet."""
+        mine, theirs = (shapely.total_bounds(list(one.outlines.values())) for one in (self, other))
+        return bool((mine[:2] <= theirs[2:]).all() and (theirs[:2] <= mine[2:]).all())
 
     def of_each(self, made: Progress) -> tuple[tuple[int, Progress], ...]:
         """Return the dots of each area; what all fall short of is told with the first."""
@@ -254,7 +273,7 @@ def stippling(
     dots, around = drawing.dots, policies.seen_from(areas)
     seen = seen_of(policies, areas)
     if near is None:
-        x0, y0, x1, y1 = box_around(part)
+        x0, y0, x1, y1 = box_around(part, drawing)
         x, y = dots.position_mm.T
         near = np.flatnonzero((x >= x0) & (x <= x1) & (y >= y0) & (y <= y1))
     if seen:
@@ -279,23 +298,31 @@ def stippling(
     lines = lines_met(drawing, dots.take(fixed)) if drawing.lines else None
     seen = () if cut is not part else seen
     onto = bled_onto(policies, areas) if cut is part else ()
-    of_each = _of_each(partition, areas, cut) if seen or onto or len(areas) > 1 else ()
     task = Task(style, reference, parts_mm=parts, standing=standing, lines=lines,
                 neighbours_mm=dots.position_mm[others],
                 neighbours_radius_mm=dots.radius_mm[others], pieces_mm=pieces,
-                seen_mm=seen, bleeds_onto_mm=onto, areas_mm=of_each)  # fmt: skip
-    return AreaTask(areas, task, dots.area[others], partition)
+                seen_mm=seen, bleeds_onto_mm=onto)  # fmt: skip
+    return AreaTask(areas, task, dots.area[others], others, partition,
+                    _of_each(partition, areas, cut), _white_areas(drawing))  # fmt: skip
 
 
-def _of_each(partition: Partition, areas: Sequence[int], cut: Outline) -> tuple[Outline, ...]:
+def _of_each(partition: Partition, areas: Sequence[int], cut: Outline) -> dict[int, Outline]:
     """Return what each of some areas has of the place that their dots may lie in."""
-    owned = [polygons_in(shapely.intersection(partition.part_of(k), cut)) for k in areas]
-    return tuple(part for part in owned if not part.is_empty)
+    if len(areas) == 1:
+        return {areas[0]: cut}
+    owned = {k: polygons_in(shapely.intersection(partition.part_of(k), cut)) for k in areas}
+    return {k: part for k, part in owned.items() if not part.is_empty}
 
 
-def box_around(part: Outline) -> tuple[float, float, float, float]:
-    """Return the box in which an area's own dots and its neighbours lie."""
-    margin = max(_LEAST_MARGIN_MM, _MARGIN * float(np.sqrt(part.area)))
+def _white_areas(drawing: Drawing) -> list[int]:
+    white = {k for k, style in drawing.styles.items() if style.is_inverse}
+    return [k for k, area in drawing.areas.items() if area.style in white] if white else []
+
+
+def box_around(part: Outline, drawing: Drawing) -> tuple[float, float, float, float]:
+    """Return the box in which an area's own dots, its neighbours and what reaches into it lie."""
+    largest = float(drawing.dots.radius_mm.max(initial=0.0))
+    margin = max(_LEAST_MARGIN_MM, _MARGIN * float(np.sqrt(part.area)), largest)
     x0, y0, x1, y1 = part.bounds
     return x0 - margin, y0 - margin, x1 + margin, y1 + margin
 

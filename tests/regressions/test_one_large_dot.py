@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from stippler.kernels.tone.union_share import _sorted, shares_of_union
+from stippler.kernels.tone.union_share import shares_of_union, sort_discs
 
 
 def mixed(n, largest, seed=1):
@@ -29,7 +29,7 @@ def test_cells_hold_few_dots_whatever_the_largest_is():
     discs = mixed(20_000, 0.2)
     discs[7, 2] = 20.0
     order, by_cell = np.empty(len(discs), np.int64), np.empty((len(discs), 3), np.float32)
-    grids = _sorted(discs, order, by_cell)
+    grids = sort_discs(discs, order, by_cell)
     assert sorted(order) == list(range(len(discs)))
     for n_x, n_y, base in grids.whole:
         first = grids.first[base : base + n_x * n_y + 1]

@@ -101,6 +101,66 @@ def test_stopping_keeps_what_is_done_and_leaves_the_rest_as_it_was(stage: Stage)
     assert same(state(session, (0, 2, 3)), start)
 
 
+@pytest.fixture
+def dark_halves(stage: Stage) -> Stage:
+    """Two dark areas beside each other, whose dots reach over the wall between them."""
+    drawing = Drawing.blank(Page(60.0, 40.0), Style(n_dots=300, iterations=4, border="wall"))
+    drawing.reference = Reference(np.full((40, 60), 0.85, np.float32), 60.0)
+    drawing.styles[1] = Style(n_dots=80, iterations=4, border="wall")
+    drawing.areas[1] = Area("left", box(10, 10, 25, 25), style=1)
+    drawing.areas[2] = Area("right", box(25, 10, 40, 25), style=1)
+    stage.session.show(drawing)
+    document = stage.session.document
+    document.begin("Fill")
+    document.insert(Dots.round(np.random.default_rng(0).random((50, 2)) * (60, 40), 0.2))
+    document.commit()
+    return stage
+
+
+def radius_of(session: Session, area: int) -> np.ndarray:
+    dots = session.document.dots.by_id()
+    return dots.radius_mm[dots.area == area].copy()
+
+
+def test_sizes_beside_an_area_that_is_made_are_a_part_of_its_step(dark_halves: Stage) -> None:
+    stage, session = dark_halves, dark_halves.session
+    processing.process(session, [1, 2])
+    made = results(stage)
+    first = next(work for work in made if work.finished)
+    stage.tell(first)
+    before = radius_of(session, 1)
+    assert np.array_equal(before, first.finished[0][1].radius_mm)
+    stage.tell(made[-1], "finished")
+    after = radius_of(session, 1)
+    assert np.array_equal(after, dict(made[-1].finished)[1].radius_mm)
+    assert (after < before).all()
+    assert steps(session) == ["Fill", "Process left", "Process right"]
+    session.undo()
+    assert np.array_equal(radius_of(session, 1), before)
+    session.redo()
+    assert np.array_equal(radius_of(session, 1), after)
+
+
+def test_sizes_that_a_person_has_changed_meanwhile_stay(dark_halves: Stage) -> None:
+    stage, session = dark_halves, dark_halves.session
+    processing.process(session, [1, 2])
+    made = results(stage)
+    k = next(k for k, work in enumerate(made) if work.finished)
+    stage.tell(replace(made[k], progress=None))  # nothing is shown of the second one yet
+    document = session.document
+    rows = np.flatnonzero(document.dots.area == 1)
+    ids, gone = document.dots.id[rows[:3]].copy(), document.dots.id[rows[5]].copy()
+    document.begin("Size")
+    document.change("radius_mm", rows[:3], np.full(3, 0.3, np.float32))
+    document.remove(rows[5:6])
+    document.commit()
+    stage.tell(made[-1], "finished")
+    assert np.array_equal(document.dots.radius_mm[document.rows(ids)], np.full(3, 0.3, np.float32))
+    assert document.rows(gone[None])[0] < 0
+    others = np.delete(dict(made[-1].finished)[1].radius_mm, [0, 1, 2, 5])
+    assert np.array_equal(np.sort(others), np.sort(radius_of(session, 1)[3:]))
+
+
 def test_areas_that_are_locked_or_gone_are_left_alone(stage: Stage) -> None:
     session = stage.session
     drawing = session.document.drawing

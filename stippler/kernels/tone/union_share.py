@@ -92,7 +92,7 @@ def _segment(h, r):
 
 
 @inline
-def _reached(x, y, r, grids, k):
+def reached(x, y, r, grids, k):
     """Return columns and rows, first to last, whose discs may meet one of radius r at (x, y)."""
     side = grids.real[k, 0]
     n_x, n_y = grids.whole[k, 0], grids.whole[k, 1]
@@ -122,7 +122,7 @@ def _lost_to_neighbours(i, discs, grids, order):
     first, lost = grids.first, 0.0
     for k in range(len(grids.real)):
         n_x, base = grids.whole[k, 0], grids.whole[k, 2]
-        x0, x1, y0, y1 = _reached(x, y, r, grids, k)
+        x0, x1, y0, y1 = reached(x, y, r, grids, k)
         for row in range(base + y0 * n_x, base + y1 * n_x + 1, n_x):
             for j in range(first[row + x0], first[row + x1 + 1]):
                 dx, dy, s = discs[j, 0] - x, discs[j, 1] - y, discs[j, 2]
@@ -141,7 +141,7 @@ def _kept(i, discs, grids, order, rays):
     first, kept = grids.first, 0.0
     for k in range(len(grids.real)):
         n_x, base = grids.whole[k, 0], grids.whole[k, 2]
-        x0, x1, y0, y1 = _reached(x, y, r, grids, k)
+        x0, x1, y0, y1 = reached(x, y, r, grids, k)
         for row in range(base + y0 * n_x, base + y1 * n_x + 1, n_x):
             for j in range(first[row + x0], first[row + x1 + 1]):
                 dx, dy, s = discs[j, 0] - x, discs[j, 1] - y, discs[j, 2]
@@ -200,12 +200,12 @@ def shares_of_union(discs: NDArray[np.float32]) -> NDArray[np.float32]:
     if n < 2:
         return out
     order, by_cell = np.empty(n, np.int64), np.empty((n, 3), np.float32)
-    grids = _sorted(discs, order, by_cell)
+    grids = sort_discs(discs, order, by_cell)
     parallel_for(_shares, n, by_cell, grids, order, out, grain=2048)
     return out
 
 
-def _sorted(
+def sort_discs(
     discs: NDArray[np.float32], order: NDArray[np.int64], by_cell: NDArray[np.float32]
 ) -> Grids:
     """Sort discs into a grid for each class of sizes, the largest first.
