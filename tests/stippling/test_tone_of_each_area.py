@@ -50,23 +50,31 @@ def pictured(kind: str) -> Reference:
 
 def asked(reference: Reference, part: shapely.Geometry) -> float:
     """Return the integral of the darkness over a part of the page, pixel by pixel."""
-    dark, side = reference.darkness, reference.pixel_mm
+    side = reference.pixel_mm
     x0, y0, x1, y1 = np.array(part.bounds) / side
-    i, j = np.mgrid[int(y0) : min(int(np.ceil(y1)), len(dark)),
-                    int(x0) : min(int(np.ceil(x1)), dark.shape[1])]  # fmt: skip
-    pixels = shapely.box(j * side, i * side, (j + 1) * side, (i + 1) * side)
+    left, top = max(int(x0) - 1, 0), max(int(y0) - 1, 0)
+    dark = reference.darkness[top : int(y1) + 2, left : int(x1) + 2]
+    height, width = dark.shape
+    line = shapely.get_coordinates(shapely.segmentize(part.boundary, 0.5 * side)) / side
+    met = np.zeros((height + 4, width + 4), bool)  # pixels at the outline, and those around them
+    j, i = np.clip(np.floor(line).astype(int) - (left, top), -1, (width, height)).T + 2
+    for down, right in np.ndindex(3, 3):
+        met[i + down - 1, j + right - 1] = True
+    met = met[2:-2, 2:-2]
     shapely.prepare(part)
-    area = np.where(shapely.covers(part, pixels), side**2, 0.0)
-    cut = shapely.intersects(part, pixels) & (area == 0.0)
-    area[cut] = shapely.area(shapely.intersection(pixels[cut], part))
-    return float((area * dark[i, j]).sum())
+    y, x = np.mgrid[top : top + height, left : left + width]
+    area = np.where(shapely.contains_xy(part, (x + 0.5) * side, (y + 0.5) * side), side**2, 0.0)
+    x, y = x[met] * side, y[met] * side
+    cut = shapely.intersection(shapely.box(x, y, x + side, y + side), part)
+    area[met] = shapely.area(cut)
+    return float((area * dark).sum())
 
 
 def laid(position, radius, part: shapely.Geometry) -> float:
     """Return how much of a part of the page discs cover, in mm²."""
     near = shapely.dwithin(shapely.points(position), part, radius)
     discs = shapely.buffer(shapely.points(position[near]), radius[near] * 1.0001, quad_segs=48)
-    return shapely.union_all(discs).intersection(part).area
+    return shapely.disjoint_subset_union_all(discs).intersection(part).area
 
 
 def errors(document: Document, some: Sequence[int] = ()) -> dict[int, tuple[float, int]]:
