@@ -39,7 +39,7 @@ def figures(quick: bool = False) -> list[Figure]:
     """Measure everything; `quick` leaves out what takes long."""
     repeats = 5 if quick else 15
     found = _square(repeats) + _shapes(repeats) + _weighted(repeats) + _uneven(repeats)
-    found += _ring() + _sizes(quick) + _brush(repeats) + _run_from_halftone(repeats)
+    found += _curves() + _sizes(quick) + _brush(repeats) + _run_from_halftone(repeats)
     found += _beside_a_ticking_thread(quick)
     return found
 
@@ -193,22 +193,29 @@ def _uneven(repeats: int) -> list[Figure]:
     ]  # fmt: skip
 
 
-def _ring() -> list[Figure]:
-    """Time steps of rings, whose cells are long and thin."""
+def _curves() -> list[Figure]:
+    """Time steps of dots along curves, whose cells are long and thin."""
     a = np.arange(100_000) * 2 * np.pi / 100_000
     ring = np.c_[np.cos(a), np.sin(a)]
-    found = []
+    found: list[Figure] = []
     for name, xy in (
         ("100k in a ring about one more dot", np.vstack([[[0.0, 0.0]], ring])),
         ("100k in a ring about nothing", ring),
+        ("100k in half a ring", np.c_[np.cos(a / 2), np.sin(a / 2)]),
+        ("100k in an ellipse", ring * [1.0, 0.6]),
     ):
-        engine = Relaxation(xy, box(-1.25, -1.25, 1.25, 1.25))
-        times = [least_s(engine.step, 1, warm=0) for _ in range(3)]
-        found += [
-            Figure(f"{name}, first step", times[0], "s", 1.0, note="all dots on one circle"),
-            Figure(f"{name}, third step", times[2], "s", 1.0),
-        ]
-    return found
+        found += _first_and_third(name, xy, box(-1.25, -1.25, 1.25, 1.25))
+    wall = Point(0, 0).buffer(1.05, 64).difference(Point(0, 0).buffer(0.95, 64))
+    return found + _first_and_third("100k in a ring between two walls", ring, wall)
+
+
+def _first_and_third(name: str, xy: Points, shape: Polygon) -> list[Figure]:
+    engine = Relaxation(xy, shape)
+    times = [least_s(engine.step, 1, warm=0) for _ in range(3)]
+    return [
+        Figure(f"{name}, first step", times[0], "s", 1.0),
+        Figure(f"{name}, third step", times[2], "s", 1.0),
+    ]
 
 
 def _sizes(quick: bool) -> list[Figure]:

@@ -108,10 +108,10 @@ class PolygonSet:
 
 
 def _densified(ring: Points, finest: float) -> Points:
-    following = np.roll(ring, -1, axis=0)
+    following = np.concatenate([ring[1:], ring[:1]])
     n = np.maximum(np.ceil(np.hypot(*(following - ring).T) / finest), 1).astype(int)
-    if n.sum() > 4000:
-        n[:] = 1
+    if n.max() == 1 or n.sum() > 4000:
+        return ring + 0.0
     parts = [
         ring[k] + (following[k] - ring[k]) * (np.arange(n[k]) / n[k])[:, None]
         for k in range(len(ring))

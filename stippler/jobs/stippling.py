@@ -84,6 +84,7 @@ def relax_drawing(
     from stippler.stippling.pipeline import run
     from stippler.stippling.progress import DONE
     from stippler.stippling.tasks import relaxing
+    from stippler.stippling.tone_of_run import sized_again
 
     task, rows, notes = relaxing(drawing, style, steps, areas)
     yield Work("relax", 0, steps, notes=notes)
@@ -94,6 +95,9 @@ def relax_drawing(
         if made.stage == DONE:
             sizes = drawing.dots.radius_mm.copy()
             sizes[rows] = made.radius_mm[: len(rows)]
+            is_solved = sizes != drawing.dots.radius_mm
+            if len(drawing.areas) > 1 and is_solved.any():
+                sizes = sized_again(drawing, moved, sizes, is_solved)
         held = made.holding
         if held is not None:
             curve, along = np.full(len(moved), NO_CURVE, np.int32), np.zeros(len(moved))

@@ -44,11 +44,13 @@ def sizes_of_areas(
     radii: Floats,
     area_of_dot: NDArray[np.integer],
     limits: Floats,
+    is_cut: NDArray[np.bool_],
 ) -> Floats:
     """Return sizes by which each area lays down the ink that it asks for.
 
     Areas whose tone is met keep theirs to the bit; so do those that the range of sizes, or few
-    dots, do not let meet it. O(n); the same bits for any number of threads.
+    dots, do not let meet it. Where too little crosses an area's border to make it so, its dots are
+    not looked at. O(n); the same bits for any number of threads.
 
     Parameters
     ----------
@@ -63,23 +65,29 @@ def sizes_of_areas(
         Whose dot it is; below 0 one whose size stays.
     limits : (k, 2) float64
         The least and the largest radius in each.
+    is_cut : (k,) bool
+        Areas whose own dots' cells do not end at their borders: what of them is beyond is lost.
     """
     mine = np.flatnonzero(area_of_dot >= 0)
     area = area_of_dot[mine]
     reach = radii.copy()
     reach[mine] *= _MOST
-    ink = InkOfDiscs(outlines, position, reach)
-    factor, is_left = np.ones(len(asked)), ~(asked > 0.0)
+    borders = Borders(outlines, position, reach)
+    may_be_off = borders.crossed(radii, is_cut) > _FINE * asked
+    if not may_be_off.any():
+        return radii
+    ink = InkOfDiscs(borders, may_be_off)
+    factor, is_left = np.ones(len(asked)), ~may_be_off
     low, high = np.minimum(limits[area, 0], radii[mine]), np.maximum(limits[area, 1], radii[mine])
     found = radii
     for _ in range(_ROUNDS):
         laid, free = ink.laid(found)
-        off = np.divide(laid, asked, out=np.ones_like(asked), where=asked > 0.0) - 1.0
+        off = np.divide(laid, asked, out=np.ones_like(asked), where=may_be_off) - 1.0
         wrong = (np.abs(off) > np.where(factor == 1.0, _FINE, _MET)) & ~is_left
         if not wrong.any():
             break
         size = found[mine]
-        can = np.where(off[area] > 0.0, size > low, size < high) & (ink.area_of[mine] == area)
+        can = np.where(off[area] > 0.0, size > low, size < high) & (borders.area_of[mine] == area)
         gain = np.bincount(area[can], (free[mine] * size)[can], len(asked))
         is_left |= wrong & ~(gain > 0.0)
         wrong &= gain > 0.0
@@ -101,59 +109,108 @@ def ink_asked(outlines: Sequence[Outline], darkness: Weights) -> Floats:
     return np.asarray(np.bincount(parts.shape_of, alone.mass, len(outlines)))
 
 
-class InkOfDiscs:
-    """What discs lay down in each of some areas, by their sizes.
+class Borders:
+    """Borders of areas, and which discs they cross.
 
     Parameters
     ----------
     outlines : sequence of polygons
     position : (n, 2) float64
     reach : (n,) float64
-        The largest radius of each.
+        The largest radius of each disc.
 
     Attributes
     ----------
+    edges : (m, 4) float64
+    place, anchor : (n, 2) float64
+        Centres, and a place close by that lies on no border.
+    reach : (n,) float64
     area_of : (n,) int32
-        In which area each disc's anchor lies, close to its centre; -1 in none.
+        In which area each disc's anchor lies; -1 in none.
+    dot, area : (r,) int
+        Rows: whose disc the border of which area may cross.
+    edge, first_edge : int
+        The edges, row by row, and where those of each row begin.
     """
 
     def __init__(self, outlines: Sequence[Outline], position: Floats, reach: Floats) -> None:
         parts = Compartments.of(outlines)
-        self._n_areas, self._edges = len(outlines), parts.edges.copy()
+        self.n_areas, self.edges, self.reach = len(outlines), parts.edges.copy(), reach
         odd = np.arange(1, len(position) + 1)[:, None] * _ODD % 1.0 - 0.5
-        self._place = position + odd * reach[:, None] * _ASTRAY
-        self._anchor = self._place + reach[:, None] * _ASIDE
-        self.area_of = OutlineGrid(outlines).find(self._anchor)
-        dot, touched = _touching(self._place, reach, self._edges)
+        self.place = position + odd * reach[:, None] * _ASTRAY
+        self.anchor = self.place + reach[:, None] * _ASIDE
+        self.area_of = OutlineGrid(outlines).find(self.anchor)
+        dot, touched = _touching(self.place, reach, self.edges)
         area = parts.shape_of[parts.compartment_of_edge[touched]]
-        within = np.flatnonzero(self.area_of >= 0)
+        key, row = np.unique(dot * self.n_areas + area, return_inverse=True)
+        self.dot, self.area = key // self.n_areas, key % self.n_areas
+        self.edge = touched[np.argsort(row, kind="stable")]
+        self.first_edge = _summed(np.bincount(row, minlength=len(key)))
+
+    def crossed(self, radii: Floats, is_cut: NDArray[np.bool_]) -> Floats:
+        """Return how much of discs reaches over each area's border at most, (k,).
+
+        What discs of others have within; with `is_cut`, also what its own have beyond.
+        """
+        if not len(self.dot):
+            return np.zeros(self.n_areas)
+        row = np.repeat(np.arange(len(self.dot)), np.diff(self.first_edge))
+        at, edge = self.place[self.dot[row]], self.edges[self.edge]
+        along, to = edge[:, 2:] - edge[:, :2], at - edge[:, :2]
+        length2 = np.maximum((along * along).sum(axis=1), 1e-300)
+        share = np.clip((along * to).sum(axis=1) / length2, 0.0, 1.0)
+        away = np.hypot(*(to - share[:, None] * along).T)
+        r = radii[self.dot]
+        h = np.minimum.reduceat(away, self.first_edge[:-1])
+        c = np.clip(h / np.maximum(r, 1e-300), 0.0, 1.0)
+        beyond = r * r * (np.arccos(c) - c * np.sqrt(1.0 - c * c))
+        counts = (self.area_of[self.dot] != self.area) | is_cut[self.area]
+        return np.asarray(np.bincount(self.area, beyond * counts, self.n_areas))
+
+
+class InkOfDiscs:
+    """What discs lay down in each of some areas, by their sizes.
+
+    Parameters
+    ----------
+    borders : Borders
+    some : (k,) bool
+        The areas asked about.
+    """
+
+    def __init__(self, borders: Borders, some: NDArray[np.bool_]) -> None:
+        self._borders, n_areas = borders, borders.n_areas
+        within = np.flatnonzero(borders.area_of >= 0)
+        within = within[some[borders.area_of[within]]]
+        crossed = np.flatnonzero(some[borders.area])
         key, row = np.unique(
-            np.concatenate([dot * self._n_areas + area,
-                            within * self._n_areas + self.area_of[within]]),
+            np.concatenate([borders.dot[crossed] * n_areas + borders.area[crossed],
+                            within * n_areas + borders.area_of[within]]),
             return_inverse=True,
         )  # fmt: skip
-        self._dot, self._area = key // self._n_areas, key % self._n_areas
-        self._is_inside = self.area_of[self._dot] == self._area
-        row = row[: len(dot)]
-        self._edge = touched[np.argsort(row, kind="stable")]
-        self._first_edge = _summed(np.bincount(row, minlength=len(key)))
-        some, self._list = np.unique(self._dot, return_inverse=True)
-        self._first_other, self._other = _overlapping(some, self._place, reach)
+        self._dot, self._area = key // n_areas, key % n_areas
+        self._is_inside = borders.area_of[self._dot] == self._area
+        n_edges = np.zeros(len(key), np.int64)
+        n_edges[row[: len(crossed)]] = np.diff(borders.first_edge)[crossed]
+        self._first_edge = _summed(n_edges)
+        self._edge = borders.edge[np.repeat(some[borders.area], np.diff(borders.first_edge))]
+        asked, self._list = np.unique(self._dot, return_inverse=True)
+        self._first_other, self._other = _overlapping(asked, borders.place, borders.reach)
         n_others = np.diff(self._first_other)[self._list]
-        self._first_room = _summed(2 * (n_others + np.diff(self._first_edge)))
+        self._first_room = _summed(2 * (n_others + n_edges))
 
     def laid(self, radii: Floats) -> tuple[Floats, Floats]:
         """Return each area's ink, and how much of each disc's rim is free in the disc's own."""
         k = len(self._dot)
         ink, rim, room = np.empty(k), np.empty(k), np.empty(self._first_room[-1])
         parallel_for(
-            ink_in_areas, k, self._dot, self._is_inside, self._first_edge, self._edge, self._edges,
-            self._list, self._first_other, self._other, self._place, self._anchor,
-            radii, self._first_room, room, ink, rim,
+            ink_in_areas, k, self._dot, self._is_inside, self._first_edge, self._edge,
+            self._borders.edges, self._list, self._first_other, self._other, self._borders.place,
+            self._borders.anchor, radii, self._first_room, room, ink, rim,
         )  # fmt: skip
         own, free = self._is_inside, np.zeros(len(radii))
         free[self._dot[own]] = rim[own]
-        return np.asarray(np.bincount(self._area, ink, self._n_areas)), free
+        return np.asarray(np.bincount(self._area, ink, self._borders.n_areas)), free
 
 
 def _touching(place: Floats, reach: Floats, edges: Floats) -> tuple[Rows, Rows]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from stippler.errors import ParameterError
 from stippler.kernels.cells.big_cells import MANY
-from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
 from stippler.kernels.cells.grid import find_grid_cells, sort_by_grid_cell
 from stippler.kernels.cells.kept_cells import check_stars, renumber_stars, verify_stars
 from stippler.kernels.cells.relaxation import INNER, RIM, TOO_MANY_CORNERS, relax_dots
@@ -20,6 +19,7 @@ from stippler.kernels.cells.tables import Dots, Field, Grid, Moves, Outlines, Sp
 from stippler.kernels.machine.pool import parallel_for
 from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.compartments import RECTANGLE, Compartments
+from stippler.stippling.crowds import Crowds
 from stippler.stippling.dotgrid import DotGrid
 from stippler.stippling.field_sums import NO_FIELD, Weights, running_sums
 from stippler.stippling.spacing import Rules, Wanted
@@ -100,8 +100,7 @@ class Cells:
         self.grid = DotGrid.over(parts, np.bincount(compartment_of_dot, minlength=len(parts)))
         self.spacing = float(np.sqrt(parts.area.sum() / max(n, 1)))
         self._cell_start = np.zeros(self.grid.n_cells + 1, np.int32)
-        self._crowd, self._tree_of_cell = _NO_ROWS, _NO_ROWS
-        self._node, self._arc = _NO_CELLS, _NO_CELLS
+        self._crowds = Crowds.none()
         self._field = running_sums(density, parts)
         self._slack = np.inf
         self._keep = False
@@ -337,9 +336,7 @@ class Cells:
     @property
     def _table(self) -> Grid:
         real, whole = self.grid.real, self.grid.whole
-        return Grid(
-            real, whole, self._cell_start, self._slack, self._tree_of_cell, self._node, self._arc
-        )
+        return Grid(real, whole, self._cell_start, self._slack, *self._crowds.tables)
 
     def _relax(
         self,
@@ -410,7 +407,7 @@ class Cells:
         self.n_failed = len(which)
         if self.n_failed > MOST_TODO * self.n:
             return False
-        self._bound_crowds()
+        self._crowds.bound(self.xs, self.ys)
         settled = np.zeros(self.n, np.bool_)
         while done and len(which):
             settled[which] = True
@@ -439,14 +436,11 @@ class Cells:
         if not done:
             return False
         sort_by_grid_cell(cell_of_dot, cell_start, order)
-        crowd, tree_of_cell, node, arc = self._split_crowds(cell_start, order)
+        crowds = Crowds.split(cell_start, order, self.xs, self.ys)
         if cancel is not None and cancel():
             return False
         names = ["fixed", "compartment_of_dot", "order", "_is_met"]
-        sorted_rows: dict[str, Any] = {
-            "_cell_start": cell_start, "_crowd": crowd, "_tree_of_cell": tree_of_cell,
-            "_node": node, "_arc": arc,
-        }  # fmt: skip
+        sorted_rows: dict[str, Any] = {"_cell_start": cell_start, "_crowds": crowds}
         if with_stars:
             names += ["_n_star", "_kind_of_cell", "_free_of_dot"]
             new_row = np.empty(n, np.int32)
@@ -475,37 +469,10 @@ class Cells:
         for name, rows in (sorted_rows | new).items():
             setattr(self, name, rows)
         self._slack = 0.0
-        self._bound_crowds()
+        crowds.bound(self.xs, self.ys)
+        crowds.join(self.grid.whole, self.xs, self.ys)
         self._has_stars = self._has_stars and with_stars
         return True
-
-    def _split_crowds(self, cell_start: Rows, order: Rows) -> tuple[Rows, Rows, Floats, Floats]:
-        """Order the dots of crowded grid cells by trees; return cells, their trees, room for them.
-
-        All are empty where no cell is crowded.
-        """
-        n_dots = np.diff(cell_start)
-        crowd = np.flatnonzero(n_dots > CROWD).astype(np.int32)
-        if not len(crowd):
-            return crowd, _NO_ROWS, _NO_CELLS, _NO_CELLS
-        args = (split_crowds, len(crowd), crowd, cell_start, self.xs, self.ys, order)
-        parallel_for(*args, grain=1, chunks=16)
-        halvings = np.ceil(np.log2(n_dots[crowd] / LEAF)).astype(np.int64)
-        ends = np.cumsum(2 << halvings)
-        number = np.arange(len(n_dots))
-        filled = np.where(n_dots > 0, number, len(n_dots))
-        tree_of_cell = (number - np.minimum.accumulate(filled[::-1])[::-1] - 1).astype(np.int32)
-        tree_of_cell[crowd] = np.concatenate([[0], ends[:-1]])
-        n_nodes = int(ends[-1])
-        return crowd, tree_of_cell, np.empty((n_nodes, 4)), np.empty((n_nodes, 8))
-
-    def _bound_crowds(self) -> None:
-        """Fit the trees of crowded grid cells to where their dots are now."""
-        if len(self._crowd):
-            parallel_for(
-                bound_crowds, len(self._crowd), self._crowd, self._tree_of_cell, self._cell_start,
-                self.xs, self.ys, self._node, self._arc, grain=1, chunks=16,
-            )  # fmt: skip
 
 
 def _room_for_sides(n: int) -> tuple[Floats, Rows, Rows]:

@@ -16,13 +16,13 @@ from stippler.kernels.machine.simd import LANES, SCAN
 from stippler.stippling.cells import CORNER_CAP, LLOYD, NO_OUTLINES
 from stippler.stippling.coinciding import part_coinciding
 from stippler.stippling.compartments import Compartments, Shape
+from stippler.stippling.crowds import Crowds
 from stippler.stippling.dotgrid import DotGrid
 from stippler.stippling.field_sums import Weights, running_sums
 
 _NO_FLAGS = np.empty(0, np.uint8)
 NO_STARS = Stars(np.empty((0, LANES), np.int32), _NO_FLAGS, _NO_FLAGS)
 _NO_CELLS = np.empty((0, 6))
-_NO_NODES = np.empty((0, 4))
 
 
 class LocalRelaxation:
@@ -216,9 +216,8 @@ class LocalRelaxation:
         self._dots = Dots(self._xs, self._ys, np.zeros(0, np.bool_), self._compartment_of_slot)
         cell_start = (np.arange(n_cells + 1) * self._room).astype(np.int32)
         self._table = Grid(
-            self._grid.real, self._grid.whole, cell_start, 0.0, np.empty(0, np.int32), _NO_NODES,
-            _NO_NODES,
-        )  # fmt: skip
+            self._grid.real, self._grid.whole, cell_start, 0.0, *Crowds.none().tables
+        )
         self._moves = Moves(
             np.empty(n_slots), np.empty(n_slots), np.empty(n_slots), np.zeros(n_slots, np.uint8),
             np.empty(n_slots),

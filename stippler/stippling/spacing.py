@@ -81,7 +81,12 @@ def rules_after(n_steps: int) -> Rules:
     What strict rules want cannot be had everywhere. What has been reached meets looser ones with
     room to spare, so that dots come to rest.
     """
-    t = min(max((n_steps - _TIGHT_STEPS) / _LOOSENING_STEPS, 0.0), 1.0)
+    return _loosened(min(max((n_steps - _TIGHT_STEPS) / _LOOSENING_STEPS, 0.0), 1.0))
+
+
+@cache  # a run of many steps asks for all of them before its first
+def _loosened(t: float) -> Rules:
+    """Return rules between the strict ones, 0, and the last, 1."""
     if t == 0.0:
         return RULES
     return Rules(*(a + t * (b - a) for a, b in zip(astuple(RULES), astuple(AT_LAST), strict=True)))

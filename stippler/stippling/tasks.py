@@ -303,7 +303,7 @@ def stippling(
                 neighbours_radius_mm=dots.radius_mm[others], pieces_mm=pieces,
                 seen_mm=seen, bleeds_onto_mm=onto)  # fmt: skip
     return AreaTask(areas, task, dots.area[others], others, partition,
-                    _of_each(partition, areas, cut), _white_areas(drawing))  # fmt: skip
+                    _of_each(partition, areas, cut), white_areas(drawing))  # fmt: skip
 
 
 def _of_each(partition: Partition, areas: Sequence[int], cut: Outline) -> dict[int, Outline]:
@@ -314,7 +314,8 @@ def _of_each(partition: Partition, areas: Sequence[int], cut: Outline) -> dict[i
     return {k: part for k, part in owned.items() if not part.is_empty}
 
 
-def _white_areas(drawing: Drawing) -> list[int]:
+def white_areas(drawing: Drawing) -> list[int]:
+    """Return the areas whose dots are white."""
     white = {k for k, style in drawing.styles.items() if style.is_inverse}
     return [k for k, area in drawing.areas.items() if area.style in white] if white else []
 

@@ -17,8 +17,12 @@ from numba.core.dispatcher import Dispatcher
 from stippler.app import App
 from stippler.brushes.kinds import KINDS
 from stippler.drawing.style import Style
+from stippler.ui.window.gui import Gui
 from stippler.ui.window.scripted_host import Host
+from stippler.ui.window.window import Window
+from tests.unseen_frames import filled_when_seen
 
+Gui.draw, Window.pixels = filled_when_seen()
 loaded, at_work = [], []
 compile_one = Dispatcher.compile
 
@@ -83,6 +87,7 @@ def test_no_kernel_loads_under_a_hand(tmp_path: Path) -> None:
         capture_output=True,
         text=True,
         check=False,
+        cwd=Path(__file__).parents[2],
         env={**os.environ, "STIPPLER_CONFIG_DIR": str(tmp_path)},
     )
     assert result.returncode == 0, result.stderr

@@ -43,7 +43,7 @@ def test_all_dots_lie_within(radius, length, turn, noise, n, seed):
     angle = turn + length * np.sort(rng.random(n))
     xy = np.c_[np.cos(angle), np.sin(angle)] * (radius + noise * rng.standard_normal((n, 1)))
     xy, node, arc, depth = _bounded(xy)
-    if node[0, 1] == 0.0:
+    if node[0, 0] == 0.0:
         return
     for k, dots in _nodes(n, depth):
         if arc[k, 4] < 0.0:
@@ -61,7 +61,7 @@ def test_all_dots_lie_within(radius, length, turn, noise, n, seed):
 def test_a_circle_through_all_dots_holds_none(n):
     angle = 0.7 + 0.02 * np.arange(n) / n
     _, node, arc, depth = _bounded(np.c_[np.cos(angle), np.sin(angle)])
-    assert node[0, 1] == 1.0
+    assert node[0, 0] == 1.0
     for k, _ in _nodes(n, depth):
         x, y, tx, ty, ratio, ax, ay, least = arc[k]
         slope = np.array([ax + 2 * x, ay + 2 * y])  # the circle's middle is the origin
@@ -71,4 +71,4 @@ def test_a_circle_through_all_dots_holds_none(n):
 
 def test_nothing_is_told_of_dots_all_over():
     _, node, _, _ = _bounded(np.random.default_rng(0).random((200, 2)))
-    assert node[0, 1] == 0.0
+    assert node[0, 0] == 0.0

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from stippler.kernels.cells.cell_trees import CROWD, LEAF, bound_crowds, split_crowds
+from stippler.kernels.cells.cell_trees import (
+    CROWD,
+    LEAF,
+    bound_crowds,
+    link_crowds,
+    split_crowds,
+)
 
 
 @pytest.mark.parametrize("n", [CROWD + 1, 64, 65, 1000])
@@ -28,7 +34,6 @@ def test_leaves_are_small_and_boxes_hold_their_dots(n, kind):
     tree_of_cell = np.array([-1, 2, -1], np.int32)
     moved = xy[order] + 0.01 * np.random.default_rng(2).standard_normal((n + 7, 2))
     bound_crowds(0, 1, crowd, tree_of_cell, cell_start, *np.ascontiguousarray(moved.T), node, arc)
-    assert node[2, 0] == depth
     for level in range(depth + 1):
         for v in range(1 << level):
             dots = moved[3 + (n * v >> level) : 3 + (n * (v + 1) >> level)]
@@ -36,6 +41,25 @@ def test_leaves_are_small_and_boxes_hold_their_dots(n, kind):
             box = node[2 + (1 << level) + v]
             np.testing.assert_array_equal(box, [*dots.min(axis=0), *dots.max(axis=0)])
     assert np.isnan(node[[0, 1, -1, -2]]).all()
+    link = np.full((len(node), 2), -9, np.int32)
+    link_crowds(0, 1, crowd, tree_of_cell, cell_start, link)
+    assert _ends_of_leaves(link, 3) == sorted(
+        {3 + (n * v >> depth) for v in range(1, (1 << depth) + 1)}
+    )
+    assert (link[[0, 1, 2, -1, -2]] == -9).all()
+
+
+def _ends_of_leaves(link, top):
+    """Return where the dots of each leaf end, from left to right; leaves follow one another."""
+    first, second = link[top]
+    if first < 0:
+        return [int(second)]
+    left, right = (_ends_of_leaves(link, k) for k in (first, second))
+    k = second
+    while link[k, 0] >= 0:
+        k = link[k, 0]
+    assert -1 - link[k, 0] == left[-1]
+    return left + right
 
 
 def test_halves_lie_on_either_side():

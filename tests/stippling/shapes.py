@@ -65,10 +65,13 @@ def spiral(turns: float = 3.0, width: float = 0.5) -> Polygon:
 def points_in(polygon: Polygon, n: int, seed: int) -> np.ndarray:
     rng = np.random.default_rng(seed)
     x0, y0, x1, y1 = polygon.bounds
+    shapely.prepare(polygon)
     found = np.empty((0, 2))
-    while len(found) < n:
-        xy = rng.random((4 * n + 64, 2)) * [x1 - x0, y1 - y0] + [x0, y0]
+    n_tried = 4 * n + 64
+    while len(found) < n:  # a narrow one takes many
+        xy = rng.random((n_tried, 2)) * [x1 - x0, y1 - y0] + [x0, y0]
         found = np.vstack([found, xy[shapely.contains_xy(polygon, xy[:, 0], xy[:, 1])]])
+        n_tried = min(2 * n_tried, 65_536)
     return found[:n]
 
 

@@ -46,7 +46,7 @@ def inked(at, radius, within) -> float:
     """Return the exact share of a place that discs cover."""
     near = shapely.dwithin(shapely.points(at), within, radius)
     discs = shapely.buffer(shapely.points(at[near]), radius[near] * 1.0004, quad_segs=32)
-    return shapely.union_all(discs).intersection(within).area / within.area
+    return shapely.disjoint_subset_union_all(discs).intersection(within).area / within.area
 
 
 def asked(within) -> float:

@@ -145,7 +145,9 @@ def test_stars_survive_clusters_that_spread(monkeypatch):
     n_old = 0
     for want in from_nothing(monkeypatch, points, HOLED, steps=12):
         engine.step()
-        n_old += len(engine._cells._crowd) > 0 and engine._cells._slack > engine._cells.spacing
+        n_old += (
+            len(engine._cells._crowds.cell) > 0 and engine._cells._slack > engine._cells.spacing
+        )
         assert np.abs(engine.points - want).max() <= 1e-9 * engine._cells.spacing
     assert n_old >= 2, "no crowd was old"
 

@@ -30,7 +30,8 @@ def tone_error(
     within = box(0, 0, 60, 40) if part is None else part
     plain = Dots.round(made.position_mm, made.radius_mm, first_id=first_id)
     dots = shaped(plain, style, reference)
-    drawn = shapely.union_all(shapely.make_valid(shapely.polygons(outlines(dots, 64))))
+    shapes = shapely.make_valid(shapely.polygons(outlines(dots, 64)))
+    drawn = shapely.disjoint_subset_union_all(shapes)
     ink = shapely.intersection(drawn, within).area * 1.0008  # corners lie on the outline
     return float(ink / within.area / (low + (high - low) * within.centroid.x / 60.0) - 1.0)
 

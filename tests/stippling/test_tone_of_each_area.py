@@ -13,13 +13,17 @@ from shapely.geometry import Point, box
 from stippler.drawing.area import Area
 from stippler.drawing.document import Document
 from stippler.drawing.drawing import Drawing
+from stippler.drawing.pattern import Pattern
 from stippler.drawing.reference import Reference
 from stippler.drawing.style import Style
 from stippler.files.read.picture import read_picture
 from stippler.jobs.processing import process_now, tasks_of
+from stippler.jobs.stippling import relax_drawing
 from stippler.kernels.machine import pool
 from stippler.resources import assets
-from stippler.stippling.area_tone import InkOfDiscs
+from stippler.stippling.area_tone import Borders, InkOfDiscs
+from stippler.stippling.part_of_area import part_for_dots
+from stippler.stippling.patterns import builtin
 from stippler.stippling.pipeline import run
 from stippler.stippling.style_tone import toned
 from tests.conftest import EXAMPLES
@@ -46,23 +50,31 @@ def pictured(kind: str) -> Reference:
 
 def asked(reference: Reference, part: shapely.Geometry) -> float:
     """Return the integral of the darkness over a part of the page, pixel by pixel."""
-    dark, side = reference.darkness, reference.pixel_mm
+    side = reference.pixel_mm
     x0, y0, x1, y1 = np.array(part.bounds) / side
-    i, j = np.mgrid[int(y0) : min(int(np.ceil(y1)), len(dark)),
-                    int(x0) : min(int(np.ceil(x1)), dark.shape[1])]  # fmt: skip
-    pixels = shapely.box(j * side, i * side, (j + 1) * side, (i + 1) * side)
+    left, top = max(int(x0) - 1, 0), max(int(y0) - 1, 0)
+    dark = reference.darkness[top : int(y1) + 2, left : int(x1) + 2]
+    height, width = dark.shape
+    line = shapely.get_coordinates(shapely.segmentize(part.boundary, 0.5 * side)) / side
+    met = np.zeros((height + 4, width + 4), bool)  # pixels at the outline, and those around them
+    j, i = np.clip(np.floor(line).astype(int) - (left, top), -1, (width, height)).T + 2
+    for down, right in np.ndindex(3, 3):
+        met[i + down - 1, j + right - 1] = True
+    met = met[2:-2, 2:-2]
     shapely.prepare(part)
-    area = np.where(shapely.covers(part, pixels), side**2, 0.0)
-    cut = shapely.intersects(part, pixels) & (area == 0.0)
-    area[cut] = shapely.area(shapely.intersection(pixels[cut], part))
-    return float((area * dark[i, j]).sum())
+    y, x = np.mgrid[top : top + height, left : left + width]
+    area = np.where(shapely.contains_xy(part, (x + 0.5) * side, (y + 0.5) * side), side**2, 0.0)
+    x, y = x[met] * side, y[met] * side
+    cut = shapely.intersection(shapely.box(x, y, x + side, y + side), part)
+    area[met] = shapely.area(cut)
+    return float((area * dark).sum())
 
 
 def laid(position, radius, part: shapely.Geometry) -> float:
     """Return how much of a part of the page discs cover, in mm²."""
     near = shapely.dwithin(shapely.points(position), part, radius)
     discs = shapely.buffer(shapely.points(position[near]), radius[near] * 1.0001, quad_segs=48)
-    return shapely.union_all(discs).intersection(part).area
+    return shapely.disjoint_subset_union_all(discs).intersection(part).area
 
 
 def errors(document: Document, some: Sequence[int] = ()) -> dict[int, tuple[float, int]]:
@@ -242,6 +254,50 @@ def test_areas_of_other_styles_meet_the_tone_beside_each_other():
     assert met > 6
 
 
+def test_polygons_of_a_pattern_meet_the_tone_and_so_does_their_area():
+    document = divided(pictured("darkest"), 1, 1, n_dots=3000, iterations=6)
+    drawing = document.drawing
+    drawing.areas[1] = Area("wall", box(10, 5, 50, 35), 0)
+    drawing.patterns[1] = Pattern.over(1, builtin("bricks"), (10, 5, 50, 35), 60.0)
+    document = Document(drawing)
+    process_now(document, [0, 1])
+    dots = document.dots
+    whole = part_for_dots(drawing, 1, document.partition.part_of(1))
+    met = 0
+    for part in (whole, *whole.geoms):
+        n = shapely.intersects_xy(part, *dots.position_mm.T).sum()
+        if n >= MANY:
+            ink = laid(dots.position_mm, dots.radius_mm.astype(float), part)
+            assert ink == pytest.approx(asked(drawing.reference, part), rel=0.005)
+            met += 1
+    assert met > 10
+
+
+@pytest.mark.parametrize(("kind", "border"), [("dark", "wall"), ("waves", "through")])
+def test_areas_that_are_relaxed_meet_the_tone(kind, border):
+    document = divided(pictured(kind), 10, 5, n_dots=800, iterations=3, border=border)
+    process_now(document, list(document.drawing.areas))
+    by_hand = np.flatnonzero(document.dots.area == 2)[:2]
+    document.begin("Size")
+    document.change("radius_mm", by_hand, np.full(2, 0.3, np.float32))
+    document.commit()
+    for areas in (None, [1, 2, 3, 4]):
+        before = document.dots.radius_mm.copy()
+        style = document.drawing.styles[0]
+        *_, last = relax_drawing(document.drawing, style, 4, areas)
+        document.begin_run("Relax")
+        document.merge(last.moved_mm)
+        document.merge_radii(last.radius_mm)
+        document.end_run()
+        moved = document.dots.radius_mm != before
+        assert moved.any()
+        assert areas is None or set(document.dots.area[moved].tolist()) <= set(areas)
+        assert (document.dots.radius_mm[by_hand] == np.float32(0.3)).all()
+        off = [off for off, n in errors(document, areas or ()).values() if n >= MANY]
+        assert len(off) >= 3
+        assert np.abs(off).max() < 0.005
+
+
 def solved(document: Document) -> tuple[np.ndarray, np.ndarray]:
     """Return places and sizes as they are solved before each area's tone is looked at."""
     (one,), _ = tasks_of(document, list(document.drawing.areas))
@@ -315,7 +371,8 @@ def test_ink_of_discs_in_areas(seed, is_lattice, is_doubled):
     areas[0] = areas[0].difference(areas[0].representative_point().buffer(0.3, quad_segs=3))
     if n_areas > 4:
         areas = [areas[0].union(areas[2]), *areas[3:]]  # two pieces, maybe; a gap
-    laid, free = InkOfDiscs(areas, position, 1.02 * radius).laid(radius)
+    borders = Borders(areas, position, 1.02 * radius)
+    laid, free = InkOfDiscs(borders, np.ones(len(areas), np.bool_)).laid(radius)
     union = shapely.union_all(shapely.buffer(shapely.points(position), radius, quad_segs=128))
     assert laid == pytest.approx([union.intersection(area).area for area in areas], abs=3e-3)
     assert (free >= 0.0).all()

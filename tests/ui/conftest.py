@@ -17,8 +17,7 @@ from stippler.drawing.style import Style
 from stippler.ui.window.gui import Gui
 from stippler.ui.window.scripted_host import Host
 from stippler.ui.window.window import Window
-
-_RASTERIZER_DISCARD = 0x8C89
+from tests.unseen_frames import filled_when_seen
 
 
 @dataclass(frozen=True)
@@ -47,31 +46,10 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def only_pixels_that_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let software GL fill in a frame's panels when its pixels are asked for.
-
-    Every frame hands all to GL as ever; but its last step, which takes three quarters of the time
-    of these tests, is left out where nobody looks. The page is drawn in every frame.
-    """
-    draw, pixels = Gui.draw, Window.pixels
-    unseen: dict[Window, Gui] = {}
-
-    def draw_unseen(gui: Gui) -> None:
-        context = gui._window.ctx
-        context.enable_direct(_RASTERIZER_DISCARD)
-        try:
-            draw(gui)
-        finally:
-            context.disable_direct(_RASTERIZER_DISCARD)
-        unseen[gui._window] = gui
-
-    def seen(window: Window) -> np.ndarray:
-        if (gui := unseen.pop(window, None)) is not None:
-            window.ctx.screen.use()
-            draw(gui)
-        return pixels(window)
-
-    monkeypatch.setattr(Gui, "draw", draw_unseen)
-    monkeypatch.setattr(Window, "pixels", seen)
+    """Let software GL fill in a frame's panels when its pixels are asked for."""
+    draw, pixels = filled_when_seen()
+    monkeypatch.setattr(Gui, "draw", draw)
+    monkeypatch.setattr(Window, "pixels", pixels)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any, Self
 
 import numpy as np
@@ -228,14 +229,15 @@ def path_of_cubics(
     """Make a path of pieces of 2 (straight) or 4 (cubic) control points, flattened on the grid."""
     at: list[tuple[int, int]] = []
     curves: list[Curve] = []
-    for piece in cubics_mm:
-        p = np.asarray(piece, np.float64)
-        ends = to_grid(p)
+    pieces = [np.asarray(piece, np.float64) for piece in cubics_mm]
+    on_grid = iter(to_grid(np.concatenate(pieces)).tolist() if pieces else ())  # all at once
+    for p in pieces:
+        start, *_, end = ((x, y) for x, y in islice(on_grid, len(p)))
         if not at:
-            at.append((int(ends[0, 0]), int(ends[0, 1])))
+            at.append(start)
         if len(p) == 2:
-            if tuple(ends[1]) != at[-1]:
-                at.append((int(ends[1, 0]), int(ends[1, 1])))
+            if end != at[-1]:
+                at.append(end)
             continue
         t = np.linspace(0.0, 1.0, n_steps(p, tolerance_mm) + 1)
         first = len(at) - 1

@@ -13,6 +13,7 @@ from typing import Any
 from stippler.kernels.cells.clip import outline_piece
 from stippler.kernels.cells.field import COLUMNS, FIRST, ROWS, integrate_edge
 from stippler.kernels.cells.field_lanes import walk_lanes, walk_sides
+from stippler.kernels.cells.grid import column_of
 from stippler.kernels.cells.tables import F8, I4, Border, Field, Pads, Spot
 from stippler.kernels.cells.voronoi import cut_cell, reach2_of_cell
 from stippler.kernels.machine.eight import AT_ONCE
@@ -44,6 +45,51 @@ def gather_edges(border: Border, spot: Spot, ring: int, pads: Pads, stamp: int) 
                 pads.near[n] = e
                 n += 1
     return int(n)
+
+
+@inner
+def gather_edges_in_cell(
+    border: Border, spot: Spot, cell: F8, m: int, pads: Pads, stamp: int
+) -> int:
+    """List the border edges in the grid cells that a cell of m corners reaches into, each once."""
+    n = ZERO
+    low, high = math.inf, -math.inf
+    for k in range(m):
+        low, high = min(low, cell[1, k]), max(high, cell[1, k])
+    inverse, slack = 1.0 / spot.h, 1e-6 * spot.h
+    last_row = column_of(spot.y + high + slack, spot.gy, inverse, spot.ny)
+    for j in range(column_of(spot.y + low - slack, spot.gy, inverse, spot.ny), last_row + 1):
+        row = spot.first_cell + j * spot.nx
+        if border.cell_start[row] == border.cell_start[row + spot.nx]:
+            continue
+        top = spot.gy + j * spot.h - spot.y
+        left, right = _columns_between(cell, m, top - slack, top + spot.h + slack)
+        x0 = column_of(spot.x + left - slack, spot.gx, inverse, spot.nx)
+        x1 = column_of(spot.x + right + slack, spot.gx, inverse, spot.nx)
+        for s in range(border.cell_start[row + x0], border.cell_start[row + x1 + 1]):
+            e = border.edge_of_slot[s]
+            if pads.seen[e] != stamp:
+                pads.seen[e] = stamp
+                pads.near[n] = e
+                n += 1
+    return int(n)
+
+
+@inline
+def _columns_between(cell: F8, m: int, below: float, above: float) -> tuple[float, float]:
+    """Return from where to where, in x from the dot, a cell reaches with y in below..above."""
+    left, right = math.inf, -math.inf
+    for k in range(m):
+        n = k + 1 if k + 1 < m else 0
+        u, v, du, dv = cell[0, k], cell[1, k], cell[0, n] - cell[0, k], cell[1, n] - cell[1, k]
+        if max(v, v + dv) < below or min(v, v + dv) > above:
+            continue
+        for y in (below, above):
+            t = min(max((y - v) / dv, 0.0), 1.0) if dv != 0.0 else 0.0
+            left, right = min(left, u + t * du), max(right, u + t * du)
+        if dv == 0.0:
+            left, right = min(left, u + du), max(right, u + du)
+    return left, right
 
 
 @inline

@@ -20,6 +20,9 @@ from stippler.kernels.machine.jit import inline, inner
 _THIN = 0.125
 """Widest rectangle, by its length, that says more than a box."""
 
+_STRAIGHT = 1e-14
+"""Square of a rectangle's width, by its length, below which only rounding would tell a bend."""
+
 
 @inline
 def lies_on_curve(node: F8, tree: int, depth: int) -> bool:
@@ -56,7 +59,7 @@ def bound_arc(arc: F8, k: int, x: F8, y: F8, low: int, high: int) -> None:
         far2 = dx * dx + dy * dy
         length, width = max(length, abs(t)), max(width, abs(n_))
         tt, nn, ts, ns = tt + t * t, nn + n_ * n_, ts + t * far2, ns + n_ * far2
-    along, across = ts / tt, ns / nn if nn > 0.0 else 0.0
+    along, across = ts / tt, ns / nn if nn > _STRAIGHT * tt else 0.0
     ax, ay = along * tx - across * ty, along * ty + across * tx
     least = math.inf
     for s in range(low, high):

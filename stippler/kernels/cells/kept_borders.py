@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from stippler.kernels.cells.border import free_share, has_walls, outline_of_lanes, sum_field
-from stippler.kernels.cells.cell_trees import APART, CROWD
+from stippler.kernels.cells.cell_trees import CROWD
 from stippler.kernels.cells.grid import (
     column_of,
     distance2_to_span,
@@ -34,6 +34,7 @@ from stippler.kernels.cells.tables import (
     Spot,
     Stars,
 )
+from stippler.kernels.cells.tree_search import APART
 from stippler.kernels.machine.jit import ZERO, inline, inner
 from stippler.kernels.machine.simd import (
     FRONT,

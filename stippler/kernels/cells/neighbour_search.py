@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from stippler.kernels.cells.cell_trees import APART, cut_cell_by_crowd, cut_lanes_by_span
 from stippler.kernels.cells.grid import distance2_to_span, ring_span
 from stippler.kernels.cells.tables import F8, Dots, Grid, Spot
+from stippler.kernels.cells.tree_search import APART, cut_cell_by_tree, cut_lanes_by_span
 from stippler.kernels.cells.voronoi import OVERFLOW, cut_cell, reach2_of_cell
 from stippler.kernels.machine.jit import ZERO, inner, merged
 from stippler.kernels.machine.simd import reach2_of
@@ -71,9 +71,13 @@ def cut_cell_by_ring(cell: F8, m: int, dots: Dots, grid: Grid, spot: Spot, ring:
         start = spot.first_cell + row * spot.nx
         if len(grid.tree_of_cell) > 0:
             for k in range(start + first, start + last + 1):
-                if grid.tree_of_cell[k] >= 0:
-                    m = cut_cell_by_crowd(cell, m, dots, grid, spot.x, spot.y, k)
-                elif grid.tree_of_cell[k] == -1:
+                tree = grid.tree_of_cell[k]
+                if tree >= 0:
+                    m = cut_cell_by_tree(
+                        cell, m, dots, grid, spot.x, spot.y, ZERO + tree + 1,
+                        grid.node[tree, 0] != 0.0, False,
+                    )  # fmt: skip
+                elif tree == -1:
                     m = _cut_cell_by_run(cell, m, dots, grid, spot, k, k)
                 if m == OVERFLOW:
                     return m

@@ -18,6 +18,7 @@ from stippler.kernels.cells.border import (
     border_distance,
     free_share,
     gather_edges,
+    gather_edges_in_cell,
     has_walls,
     outline_of_cell,
     outline_of_lanes,
@@ -27,20 +28,10 @@ from stippler.kernels.cells.border import (
     sum_area,
     sum_field,
 )
-from stippler.kernels.cells.cell_trees import (
-    APART,
-    cut_lanes_by_crowd,
-    cut_lanes_by_span,
-)
-from stippler.kernels.cells.grid import ring_span, seen_distance, spot_of
+from stippler.kernels.cells.grid import seen_distance, spot_of
 from stippler.kernels.cells.moves import crosses_border, move_in_piece
 from stippler.kernels.cells.neighbour_search import cut_cell_by_ring, cut_lanes_by_ring
-from stippler.kernels.cells.row_search import (
-    SWEEP_FROM,
-    cut_by_dots_in_sight,
-    cut_far_corners,
-    sweep_rows,
-)
+from stippler.kernels.cells.row_search import SWEEP_FROM, cut_far_corners, sweep_rows
 from stippler.kernels.cells.spacing import ask, blend, rules_at_border, rules_in_lanes
 from stippler.kernels.cells.tables import (
     F8,
@@ -56,9 +47,14 @@ from stippler.kernels.cells.tables import (
     Spot,
     Stars,
 )
+from stippler.kernels.cells.tree_search import (
+    cut_cell_by_tree,
+    cut_lanes_by_crowd,
+    cut_lanes_by_tree,
+)
 from stippler.kernels.cells.voronoi import (
+    FULL,
     OVERFLOW,
-    cut_lanes_by_run,
     reach2_of_cell,
     start_cell,
     start_lanes,
@@ -150,7 +146,7 @@ def _relax(
             cell = spot.first_cell + spot.iy * spot.nx + spot.ix
             free = max(border.clear[cell] - 1, 0) * spot.h
         m, is_packed, n, reach2, free, n_near = _cell_of_dot(
-            U, V, N, S, dots, grid, border, spot, free, pads
+            U, V, N, c, dots, grid, border, spot, free, pads
         )
         moves.free[i] = free
         if m == OVERFLOW:
@@ -201,10 +197,10 @@ def _relax(
 
 @merged
 def _cell_of_dot(
-    U: Any, V: Any, N: Any, S: Any, dots: Dots, grid: Grid, border: Border, spot: Spot,
+    U: Any, V: Any, N: Any, c: int, dots: Dots, grid: Grid, border: Border, spot: Spot,
     free: float, pads: Pads,
 ) -> tuple[int, bool, int, float, float, int]:  # fmt: skip
-    """Compute a dot's cell; `free` is a distance within which no border edge lies.
+    """Compute a dot's cell in compartment c; within `free` lies no border edge.
 
     Returns
     -------
@@ -218,23 +214,26 @@ def _cell_of_dot(
         Border edges in ``pads.near``, of all that were looked at for the outline.
     """
     crowd = -ZERO - 1
-    ring = ZERO + 1
+    ring, root = ZERO + 1, ZERO - 1
     if len(grid.tree_of_cell) > 0:
         own = spot.first_cell + spot.iy * spot.nx + spot.ix
-        if grid.tree_of_cell[own] >= 0:
+        tree = grid.tree_of_cell[own]
+        if tree >= 0:
             crowd, ring = ZERO + own, ZERO
-    is_packed, is_second = True, crowd >= 0 and grid.node[grid.tree_of_cell[crowd], 1] != 0.0
-    m = OVERFLOW
-    if is_second:
-        m = _cell_of_far_side(U, V, N, S, dots, grid, spot)
-    if m == OVERFLOW:
-        m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+        if len(grid.root) > 0:
+            root = ZERO + grid.root[c]
+            if root >= 0 and tree >= 0 and grid.node[tree, 0] != 0.0:
+                ring = ZERO + SWEEP_FROM
+    is_packed = True
+    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
     while True:
         n = n_near = ZERO
-        reach2, is_swept = 0.0, False
+        reach2 = 0.0
+        is_swept = ring == SWEEP_FROM and (root >= 0 or (is_packed and free == math.inf))
         if is_packed:
-            is_swept = ring == SWEEP_FROM and free == math.inf
-            if is_swept:
+            if is_swept and root >= 0:
+                m, _n_leaves = cut_lanes_by_tree(U, V, N, m, dots, grid, spot, root)
+            elif is_swept:
                 m = sweep_rows(U, V, N, m, dots, grid, spot)
             elif ring == 0:
                 m = cut_lanes_by_crowd(U, V, N, m, dots, grid, spot.x, spot.y, crowd)
@@ -243,12 +242,15 @@ def _cell_of_dot(
                     m = cut_far_corners(U, V, N, m, dots, grid, spot)
                 if m != OVERFLOW:
                     m = cut_lanes_by_ring(U, V, N, m, dots, grid, spot, ring, crowd)
-            if m == OVERFLOW and len(grid.tree_of_cell) > 0 and not is_second:
-                is_second = True
-                m = _cell_of_far_side(U, V, N, S, dots, grid, spot)
-                ring = ZERO if crowd >= 0 else ZERO + 1
-                if m != OVERFLOW:
-                    continue
+            if m == OVERFLOW and root >= 0 and pads.cell.shape[1] <= MANY:
+                if is_swept:
+                    m = ZERO + FULL
+                    unpack_lanes(U, V, N, m, dots.x, dots.y, spot, pads.cell)
+                    is_packed = False
+                else:
+                    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
+                ring = ZERO + SWEEP_FROM
+                continue
             if m == OVERFLOW:
                 is_packed = False
                 m = start_cell(pads.cell, spot.x0, spot.y0, spot.x1, spot.y1)
@@ -257,7 +259,10 @@ def _cell_of_dot(
             reach2 = reach2_of(U, V, m)
         else:
             if pads.cell.shape[1] > MANY:
+                is_swept = False
                 m = cut_big_cell_by_ring(pads, m, dots, grid, spot, ring)
+            elif is_swept:
+                m = cut_cell_by_tree(pads.cell, m, dots, grid, spot.x, spot.y, root, True, True)
             else:
                 m = cut_cell_by_ring(pads.cell, m, dots, grid, spot, ring)
             if m == OVERFLOW:
@@ -268,6 +273,14 @@ def _cell_of_dot(
         if free * free <= reach2 and (is_last or ring > 1):
             stamp = pads.stamp[0]
             pads.stamp[0] = stamp + 2
+            if is_swept:
+                if is_packed:
+                    unpack_lanes(U, V, N, m, dots.x, dots.y, spot, pads.cell)
+                n_near = gather_edges_in_cell(border, spot, pads.cell, m, pads, stamp)
+                n, _r2 = outline_within(
+                    m, border, spot, max(spot.nx, spot.ny), pads, n_near, stamp + 1
+                )
+                break
             n_near = gather_edges(border, spot, ring, pads, stamp)
             seen_free = seen_distance(spot, ring, 0.0)
             free = min(seen_free, border_distance(border.edge, pads.near, n_near, spot.x, spot.y))
@@ -281,44 +294,6 @@ def _cell_of_dot(
             break
         ring += 1
     return m, is_packed, n, reach2, free, n_near
-
-
-@inner
-def _cell_of_far_side(U: Any, V: Any, N: Any, S: Any, dots: Dots, grid: Grid, spot: Spot) -> int:
-    """Begin a cell with the dots across a void alone; return its corners, or `OVERFLOW`.
-
-    They are those that bound a rough cell, cut by the dots next to its own and those in sight. By
-    dots nearby a cell is not to be cut twice: a corner on a bisector may round across it.
-    """
-    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
-    own = spot.first_cell + spot.iy * spot.nx + spot.ix
-    for s in range(ZERO, 4):
-        row, first, last = ring_span(1, max(s - 1, 0), spot)
-        if s == 0:
-            first = last = spot.ix
-        if first <= last and m != OVERFLOW:
-            m = cut_lanes_by_span(
-                U, V, N, m, dots, grid, spot, row, first, last, APART, math.inf,
-                own if s > 0 else ZERO - 1, ZERO + 1,
-            )  # fmt: skip
-        if m != OVERFLOW and (s == 0 or s == 3):
-            m = cut_by_dots_in_sight(U, V, N, m, dots, grid, spot)
-    if m == OVERFLOW:
-        return m
-    n_far, far2 = ZERO, 16.0 * spot.h * spot.h
-    for k in range(m):
-        j = get(N, k)
-        if j >= 0 and (dots.x[j] - spot.x) ** 2 + (dots.y[j] - spot.y) ** 2 > far2:
-            put(S, n_far, j)
-            n_far += 1
-    m = start_lanes(U, V, N, spot.x0, spot.y0, spot.x1, spot.y1)
-    for k in range(n_far):
-        j = ZERO + get(S, k)
-        if m != OVERFLOW:
-            m = cut_lanes_by_run(
-                U, V, N, m, dots.x, dots.y, spot.x, spot.y, j, j + 1, APART, math.inf
-            )
-    return m
 
 
 @merged

@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stippler.kernels.cells.cell_trees import APART, cut_lanes_by_span
 from stippler.kernels.cells.grid import column_of
 from stippler.kernels.cells.tables import Dots, Grid, Spot
+from stippler.kernels.cells.tree_search import APART, cut_lanes_by_span
 from stippler.kernels.cells.voronoi import OVERFLOW
 from stippler.kernels.machine.jit import ZERO, inline, inner
 from stippler.kernels.machine.simd import get, reach2_of
@@ -25,8 +25,6 @@ _MANY = 1024
 """Dots of the rows seen after which corners far off are looked at first."""
 
 _MOST_LOOKS = 48
-
-_MOST_SIGHTS = 8
 
 
 @inline
@@ -73,43 +71,6 @@ def cut_far_corners(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot
                 return m
         if m != before or get(U, k - 1) != u or get(V, k - 1) != v:
             k, reach2 = ZERO, reach2_of(U, V, m)
-    return m
-
-
-@inner
-def cut_by_dots_in_sight(U: Any, V: Any, N: Any, m: int, dots: Dots, grid: Grid, spot: Spot) -> int:
-    """Cut a dot's cell by the first dots seen from it past its far corners; return its corners.
-
-    Along the rim of a void each dot further on takes a little more from the cell, a new corner each
-    time, until one across the void takes all that away.
-    """
-    inverse, k, looks = 1.0 / spot.h, ZERO, ZERO
-    while k < m and looks < _MOST_SIGHTS:
-        u, v = get(U, k), get(V, k)
-        k += 1
-        far = math.sqrt(u * u + v * v) * inverse
-        if far < 6.0:
-            continue
-        looks += 1
-        du, dv = u / far, v / far
-        before = ZERO - 1
-        for step in range(2 * SWEEP_FROM, int(4.0 * far) + 1):
-            x, y = spot.x + 0.5 * step * du, spot.y + 0.5 * step * dv
-            i, j = math.floor((x - spot.gx) * inverse), math.floor((y - spot.gy) * inverse)
-            if i < 0 or i >= spot.nx or j < 0 or j >= spot.ny:
-                break
-            cell = spot.first_cell + j * spot.nx + i
-            if cell == before or grid.cell_start[cell] == grid.cell_start[cell + 1]:
-                before = cell
-                continue
-            m = cut_lanes_by_span(
-                U, V, N, m, dots, grid, spot, j, i, i, APART, math.inf, ZERO - 1, ZERO + 1
-            )
-            break
-        if m == OVERFLOW:
-            return m
-        if k > m or get(U, k - 1) != u or get(V, k - 1) != v:
-            k = ZERO
     return m
 
 

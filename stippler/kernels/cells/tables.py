@@ -27,7 +27,8 @@ class Dots(NamedTuple):
 class Grid(NamedTuple):
     """The grid of each compartment, see `grid`, and its crowded cells, see `cell_trees`.
 
-    Dots may have gone as far as `slack` from the grid cell they are listed in.
+    Dots may have gone as far as `slack` from the grid cell they are listed in. `root` holds by
+    compartment the node that all its dots lie below, or -1, or is empty, see `curve_trees`.
     """
 
     real: F8
@@ -37,6 +38,8 @@ class Grid(NamedTuple):
     tree_of_cell: I4
     node: F8
     arc: F8
+    link: I4
+    root: I4
 
 
 class Border(NamedTuple):

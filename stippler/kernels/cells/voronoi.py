@@ -23,6 +23,7 @@ from stippler.kernels.machine.simd import (
     LANES,
     SCAN,
     get,
+    holds,
     lowest_bit,
     near_mask,
     out_mask,
@@ -41,6 +42,9 @@ _NOTHING = 2e-18
 
 OVERFLOW = -1
 """Number of corners of a cell that has more than there is room for."""
+
+FULL = LANES - 1
+"""Corners of a cell in lanes that is left as it was, for one more side did not fit into them."""
 
 WALL = -1
 """Sides of the box are numbered -1 (least y), -2 (most x), -3 (most y) and -4 (least x)."""
@@ -130,10 +134,12 @@ def cut_lanes_by_run(
     end: int,
     least: float,
     limit: float,
+    is_rough: bool = False,
 ) -> int:
     """Cut the cell of (x, y) by the dots first..end; return its corners, or `OVERFLOW`.
 
-    Only dots with ``least <= distance² < limit`` count.
+    Only dots with ``least <= distance² < limit`` count; of a rough cell, which some of them may
+    have cut before, not those beyond its sides: a corner on a bisector may round across it.
     """
     j = first
     while j < end:
@@ -146,8 +152,8 @@ def cut_lanes_by_run(
             a, b = xs[k] - x, ys[k] - y
             c = 0.5 * (a * a + b * b)
             mask = out_mask(U, V, a, b, c * (1.0 + TOLERANCE)) & ((1 << m) - 1)
-            if mask != 0:
-                if m + 2 > LANES:
+            if mask != 0 and not (is_rough and holds(N, m, k)):
+                if m >= FULL:
                     return OVERFLOW
                 m = _cut_lanes(U, V, N, m, a, b, c, k, mask)
         j += SCAN

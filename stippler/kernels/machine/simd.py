@@ -236,6 +236,21 @@ def out_mask(typing_context: Any, us: Any, vs: Any, a: Any, b: Any, limit: Any) 
 
 
 @_operation
+def holds(typing_context: Any, numbers: Any, m: Any, number: Any) -> Any:
+    """Return whether a number is among the first m, no more than `LANES`, of a cell buffer."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        row = _load(builder, args[0], _I8(0), LANES)
+        wanted = _splat(builder, builder.trunc(args[2], _I4), LANES)
+        same = builder.icmp_signed("==", row, wanted)
+        same = builder.and_(same, _lanes_below(builder, args[1], LANES))
+        bits = _mask_bits(builder, same, LANES)
+        return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
+
+    return types.boolean(numbers, types.int64, types.int64), generate
+
+
+@_operation
 def roll(typing_context: Any, row: Any, first: Any, kept: Any, p: Any, q: Any) -> Any:
     """Keep `kept` entries of a cell buffer from `first` on and put p and q behind them."""
 
@@ -276,51 +291,54 @@ def reach2_of(typing_context: Any, us: Any, vs: Any, m: Any) -> Any:
 
 @_operation
 def may_cut_from_box(
-    typing_context: Any, us: Any, vs: Any, m: Any, x0: Any, y0: Any, x1: Any, y1: Any
+    typing_context: Any, us: Any, vs: Any, at: Any, m: Any, x0: Any, y0: Any, x1: Any, y1: Any
 ) -> Any:
     """Return whether a box reaches into the circle about a corner through the dot, or nearly.
 
-    Only a dot within one of these circles can cut a corner away.
+    Asked are the m corners from `at` on, no more than `LANES`. Only a dot within one of these
+    circles can cut a corner away.
     """
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        u = _load(builder, args[0], _I8(FRONT), LANES)
-        v = _load(builder, args[1], _I8(FRONT), LANES)
+        u = _load(builder, args[0], args[2], LANES)
+        v = _load(builder, args[1], args[2], LANES)
         zero = ir.Constant(u.type, [0.0] * LANES)
         d2 = zero
-        for at, low, high in ((u, args[3], args[5]), (v, args[4], args[6])):
-            d = _larger(builder, _sub(builder, _splat(builder, low, LANES), at), zero)
-            d = _larger(builder, _sub(builder, at, _splat(builder, high, LANES)), d)
+        for corner, low, high in ((u, args[4], args[6]), (v, args[5], args[7])):
+            d = _larger(builder, _sub(builder, _splat(builder, low, LANES), corner), zero)
+            d = _larger(builder, _sub(builder, corner, _splat(builder, high, LANES)), d)
             d2 = _add(builder, d2, _mul(builder, d, d))
         radius2 = _add(builder, _mul(builder, u, u), _mul(builder, v, v))
         radius2 = _mul(builder, radius2, ir.Constant(u.type, [1.0 + 1e-9] * LANES))
         near = builder.fcmp_ordered("<=", d2, radius2)
-        near = builder.and_(near, _lanes_below(builder, args[2], LANES))
+        near = builder.and_(near, _lanes_below(builder, args[3], LANES))
         bits = _mask_bits(builder, near, LANES)
         return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
 
-    real = types.float64
-    return types.boolean(us, vs, types.int64, real, real, real, real), generate
+    real, whole = types.float64, types.int64
+    return types.boolean(us, vs, whole, whole, real, real, real, real), generate
 
 
 @_operation
 def may_cut_from_arc(
-    typing_context: Any, us: Any, vs: Any, m: Any, x: Any, y: Any, arc: Any, row: Any, slack: Any
-) -> Any:
+    typing_context: Any, us: Any, vs: Any, at: Any, m: Any, x: Any, y: Any, arc: Any, row: Any,
+    slack: Any,
+) -> Any:  # fmt: skip
     """Return whether dots along an arc may lie in the circle about a corner through the dot.
 
-    `arc` is a table of what `crowd_arcs` tells of dots, by row; (x, y) is the arc's middle seen
-    from the dot. A dot counts as outside from `slack` times the corner's distance on.
+    Asked are the m corners from `at` on, no more than `LANES`. `arc` is a table of what
+    `crowd_arcs` tells of dots, by row; (x, y) is the arc's middle seen from the dot. A dot counts
+    as outside from `slack` times the corner's distance on.
     """
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = _data(context, builder, signature.args[5], args[5])
-        first = builder.mul(args[6], _I8(8))
+        data = _data(context, builder, signature.args[6], args[6])
+        first = builder.mul(args[7], _I8(8))
         row_ = [builder.load(builder.gep(data, [builder.add(first, _I8(k))])) for k in range(2, 8)]
         tx, ty, ratio, ax, ay, least = (_splat(builder, number, LANES) for number in row_)
-        x_, y_ = _splat(builder, args[3], LANES), _splat(builder, args[4], LANES)
-        u = _load(builder, args[0], _I8(FRONT), LANES)
-        v = _load(builder, args[1], _I8(FRONT), LANES)
+        x_, y_ = _splat(builder, args[4], LANES), _splat(builder, args[5], LANES)
+        u = _load(builder, args[0], args[2], LANES)
+        v = _load(builder, args[1], args[2], LANES)
         two = ir.Constant(u.type, [2.0] * LANES)
 
         def size(vector: Any) -> Any:
@@ -336,13 +354,13 @@ def may_cut_from_arc(
         middle = _sub(builder, both(x_, x_, y_, y_), _mul(builder, two, both(u, x_, v, y_)))
         off = _sub(builder, _add(builder, middle, least), spread)
         far = _larger(builder, size(u), size(v))
-        off = _add(builder, off, _mul(builder, far, _splat(builder, args[7], LANES)))
+        off = _add(builder, off, _mul(builder, far, _splat(builder, args[8], LANES)))
         near = builder.fcmp_ordered("<", off, ir.Constant(u.type, [0.0] * LANES))
-        bits = _mask_bits(builder, builder.and_(near, _lanes_below(builder, args[2], LANES)), LANES)
+        bits = _mask_bits(builder, builder.and_(near, _lanes_below(builder, args[3], LANES)), LANES)
         return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
 
-    real = types.float64
-    return types.boolean(us, vs, types.int64, real, real, arc, types.int64, real), generate
+    real, whole = types.float64, types.int64
+    return types.boolean(us, vs, whole, whole, real, real, arc, whole, real), generate
 
 
 @_operation

@@ -8,6 +8,7 @@ import resvg_py
 from PIL import Image
 
 Image.MAX_IMAGE_PIXELS = None
+PAPER = "optimize_speed"  # a pixel as large as the page: smoothed, it takes longer than all dots
 FINER = 4  # consumers draw so much finer, and are averaged: their edges are coarser than ours
 
 
@@ -25,7 +26,7 @@ def averaged(image: np.ndarray, by: int) -> np.ndarray:
 
 
 def resvg(path, dpi, by=FINER):
-    found = resvg_py.svg_to_bytes(svg_path=str(path), dpi=round(dpi * by))
+    found = resvg_py.svg_to_bytes(svg_path=str(path), dpi=round(dpi * by), image_rendering=PAPER)
     with Image.open(io.BytesIO(bytes(found))) as image:
         return averaged(ink(image), by)
 
