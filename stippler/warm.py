@@ -132,7 +132,7 @@ def parts() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "relaxation and tone", draw
     yield "dots that bleed", partial(draw, 2 * FEWEST_WITH_BLEED)
     yield "long dots", partial(draw, elongation=2.0)
-    yield "clusters", _relax_a_cluster
+    yield "clusters", _relax_crowds
     for method in FIRST_DOTS:
         yield f"first dots: {method}", partial(draw, first_dots=method)
     yield "areas", partial(_stipple_an_area, reference)
@@ -194,15 +194,18 @@ def _some_dots(reference: Reference) -> Drawing:
     return Drawing.from_reference(reference, position, np.full(300, 0.3, np.float32))
 
 
-def _relax_a_cluster() -> None:
-    """Crowd dots into one cell of their grid."""
+def _relax_crowds() -> None:
+    """Crowd dots into one cell of their grid, and along a curve."""
     import numpy as np
     from shapely.geometry import box
 
     from stippler.stippling.relax import Relaxation
 
-    dots = np.random.default_rng(0).random((100, 2))
-    Relaxation(0.01 * dots, box(0, 0, 1, 1)).step()
+    cluster = 0.01 * np.random.default_rng(0).random((100, 2))
+    turn = np.linspace(0.0, 2.0 * np.pi, 2_000, endpoint=False)
+    ring = 0.5 + 0.4 * np.column_stack((np.cos(turn), np.sin(turn)))
+    for dots in (cluster, ring):
+        Relaxation(dots, box(0, 0, 1, 1)).step()
 
 
 def _uncross_a_way() -> None:
