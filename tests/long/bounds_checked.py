@@ -67,11 +67,40 @@ def odd_cells() -> None:
             Relaxation(inside, shape, method=method).run(3)
 
 
+def rings() -> None:
+    """Relax dots along curves about a void, in a square and where walls cut the curves."""
+    from stippler.stippling.relax import Relaxation
+    from tests.regressions.test_relax_rings_about_nothing import CURVES, SIDE
+
+    square = box(-SIDE, -SIDE, SIDE, SIDE)
+    comb = shapely.union_all([box(x, -1.0, x + 0.01, 1.2) for x in np.arange(-1.2, 1.2, 0.2)])
+    hole = shapely.Point(0.1, 0.0).buffer(0.9)
+    for dots in CURVES.values():
+        for shape in (square, square - hole, square - comb):
+            inside = dots[shapely.intersects_xy(shape, *dots.T)]
+            for method in ("lloyd", "even"):
+                Relaxation(inside, shape, method=method).run(2)
+
+
+def areas() -> None:
+    """Draw areas with every border between them, all at once and one of them again."""
+    from stippler.drawing.style import BORDERS
+    from stippler.jobs.processing import process_now
+    from tests.stippling.test_tone_of_each_area import divided, pictured
+
+    for kind in ("light", "dark", "edges"):
+        for border in BORDERS:
+            page = divided(pictured(kind), 12, 1, n_dots=800, iterations=4, border=border)
+            process_now(page, list(page.drawing.areas))
+            process_now(page, list(page.drawing.areas)[3:4])
+
+
 def run() -> None:
     """Do all of it in this process."""
     from stippler.warm import parts
 
-    for name, part in (*parts(), ("odd pictures", odd_pictures), ("odd cells", odd_cells)):
+    own = (odd_pictures, odd_cells, rings, areas)
+    for name, part in (*parts(), *((one.__name__, one) for one in own)):
         part()
         print(name, flush=True)
 
