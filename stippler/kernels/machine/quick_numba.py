@@ -2,8 +2,8 @@
 
 Numba optimises each function that a kernel calls by itself, makes machine code of it and loads
 that, before the kernel takes it in and all is optimised again. Of a kernel that is written to a
-file only the last counts; without the rest compiling takes two thirds of the time. What numba does
-not have under the names below is left as it is.
+file only the last counts; without the rest compiling takes two thirds of the time. A numba that
+lacks one of the names below is left as it is.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def only_for_objects() -> Iterator[Callable[[Any], None]]:
     from numba.core import codegen
 
     library: Any = codegen.CPUCodeLibrary
-    optimise = library._optimize_final_module
+    optimise: Any = getattr(library, "_optimize_final_module", None)
     whole: set[Any] = set()
 
     def optimise_whole(self: Any) -> None:
@@ -34,14 +34,15 @@ def only_for_objects() -> Iterator[Callable[[Any], None]]:
             kernel.finalize()
 
     loader: Any = codegen.JITCPUCodegen
+    changed = (
+        (library, "_optimize_final_module", optimise_whole),
+        (codegen.JITCodeLibrary, "_finalize_specific", _nothing),
+        (loader, "_add_module", _nothing),
+        (loader, "set_env", _nothing),
+    )
     with ExitStack() as stack:
-        for owner, name, instead in (
-            (library, "_optimize_final_module", optimise_whole),
-            (codegen.JITCodeLibrary, "_finalize_specific", _nothing),
-            (loader, "_add_module", _nothing),
-            (loader, "set_env", _nothing),
-        ):
-            if hasattr(owner, name):
+        if all(hasattr(owner, name) for owner, name, _ in changed):  # one without another: a crash
+            for owner, name, instead in changed:
                 stack.callback(setattr, owner, name, getattr(owner, name))
                 setattr(owner, name, instead)
         yield finish
